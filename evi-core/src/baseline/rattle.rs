@@ -1,0 +1,182 @@
+//! RATTLE, in its classical velocity form.
+
+use crate::array::Array;
+use crate::integrator::{IterationFailure, OneStep, Scheme, StepError, checked_finite};
+use crate::linear::{Factorization, SingularMatrix};
+use crate::mechanics::{Mechanics, ProjectionError, State, relative};
+use crate::newton;
+use crate::scheme::{SchemeError, checked_step_size};
+use crate::system::MechanicalSystem;
+
+/// RATTLE (Andersen, J. Comput. Phys. 52 (1983) 24) for scenes with constant mass matrix and `L = ½vᵀMv − V(t, q)`:
+///
+/// ```text
+/// v½ = v₀ + ½h M⁻¹(f(q₀) − G₀ᵀ λ₀)     q₁ = q₀ + h v½     φ(q₁) = 0
+/// v₁ = v½ + ½h M⁻¹(f(q₁) − G₁ᵀ λ₁)     G₁ v₁ = 0
+/// ```
+///
+/// Newton runs on the multipliers alone, with the Gram matrix `G₁ M⁻¹ G₀ᵀ`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rattle {
+    h: f64,
+}
+
+impl Rattle {
+    /// Steps of size `h`.
+    pub const fn new(h: f64) -> Self {
+        Self { h }
+    }
+}
+
+impl<S: MechanicalSystem> Scheme<S> for Rattle {
+    type Step = RattleStep<S>;
+
+    fn prepare(&self, mechanics: Mechanics<S>) -> Result<RattleStep<S>, SchemeError> {
+        const SCHEME: &str = "RATTLE";
+        let h = checked_step_size(self.h)?;
+        if !S::STRUCTURE.is_separable_with_constant_mass() {
+            let requirement = "a constant mass matrix and no coupling of velocity with position or time";
+            return Err(SchemeError::UnsupportedStructure { scheme: SCHEME, requirement });
+        }
+        let at_rest = Array::from_fn(|_| 0.0);
+        let (_, hessian) = S::lagrangian_derivatives(&mechanics.constants, 0.0, &at_rest, &at_rest);
+        let mut mass: S::PerCoordinate<S::PerCoordinate<f64>> = Array::from_fn(|_| Array::from_fn(|_| 0.0));
+        for entry in S::STRUCTURE.hessian.vv {
+            let value = entry.value(mechanics.constants.as_ref(), hessian.as_ref());
+            mass[entry.row][entry.col] = value;
+            mass[entry.col][entry.row] = value;
+        }
+        let requirement = "a mass matrix that is regular, not only on the constraints";
+        let mass = S::MassFactors::factor(&mass)
+            .map_err(|_| SchemeError::UnsupportedStructure { scheme: SCHEME, requirement })?;
+        Ok(RattleStep { mechanics, mass, h })
+    }
+}
+
+/// The one-step map of [`Rattle`].
+pub struct RattleStep<S: MechanicalSystem> {
+    mechanics: Mechanics<S>,
+    mass: S::MassFactors,
+    h: f64,
+}
+
+impl<S: MechanicalSystem> OneStep<S> for RattleStep<S> {
+    fn h(&self) -> f64 {
+        self.h
+    }
+
+    fn mechanics(&self) -> &Mechanics<S> {
+        &self.mechanics
+    }
+
+    fn step(&self, state: &State<S>) -> Result<State<S>, StepError> {
+        let t = state.t + self.h;
+        let mut half_step_velocity = self.kicked(state.t, &state.q, &state.v);
+        let q = self.solve_positions(state, &mut half_step_velocity)?;
+        let mut v = self.kicked(t, &q, &half_step_velocity);
+        self.project(t, &q, &mut v)
+            .map_err(|cause| StepError::Projection { t, cause: ProjectionError::Singular(cause) })?;
+        let p = self.mechanics.momentum_at(t, &q, &v);
+        checked_finite(State { t, q, v, p })
+    }
+}
+
+/// `M⁻¹ Gᵀ`, a column per constraint.
+type ConstraintDirections<S> =
+    <S as MechanicalSystem>::PerConstraint<<S as MechanicalSystem>::PerCoordinate<f64>>;
+
+impl<S: MechanicalSystem> RattleStep<S> {
+    /// `v + ½h M⁻¹ f(t, q)`.
+    fn kicked(&self, t: f64, q: &S::PerCoordinate<f64>, v: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
+        let mut kick = S::lagrangian_gradient(&self.mechanics.constants, t, q, v).force;
+        self.mass.solve(&mut kick);
+        Array::from_fn(|i| v[i] + 0.5 * self.h * kick[i])
+    }
+
+    /// Subtracts `M⁻¹ G₀ᵀ ½h λ₀` from `v`, so that `q₀ + h v` satisfies the constraints, and returns that position.
+    fn solve_positions(
+        &self,
+        state: &State<S>,
+        v: &mut S::PerCoordinate<f64>,
+    ) -> Result<S::PerCoordinate<f64>, StepError> {
+        let (h, t) = (self.h, state.t + self.h);
+        let constants = &self.mechanics.constants;
+        let (_, jacobian) = S::constraint_derivatives(constants, state.t, &state.q);
+        let directions = self.directions(&jacobian);
+        let mut q = S::PerCoordinate::<f64>::from_fn(|i| state.q[i] + h * v[i]);
+        let mut constraint_residual = 0.0;
+        let mut smallest_pivot_ratio = 1.0_f64;
+        let iteration = newton::iterate(|correction| {
+            let (mut impulse, jacobian) = S::constraint_derivatives(constants, t, &q);
+            constraint_residual = largest(impulse.as_ref());
+            let gram = self
+                .factor_gram(&jacobian, &directions)
+                .map_err(|matrix| IterationFailure::Singular { correction, matrix })?;
+            smallest_pivot_ratio = smallest_pivot_ratio.min(gram.pivot_ratio());
+            gram.solve(&mut impulse);
+            let mut length = 0.0_f64;
+            for i in 0..S::N_COORDINATES {
+                let displacement: f64 = (0..S::N_CONSTRAINTS).map(|c| directions[c][i] * impulse[c]).sum();
+                v[i] -= displacement / h;
+                q[i] = state.q[i] + h * v[i];
+                length = if displacement.abs() <= length { length } else { displacement.abs() };
+            }
+            Ok(relative(length, largest(q.as_ref())))
+        });
+        match iteration {
+            Ok(_) => Ok(q),
+            Err(failure) => {
+                Err(IterationFailure::at(failure, state.t, constraint_residual, smallest_pivot_ratio))
+            }
+        }
+    }
+
+    /// Subtracts `M⁻¹ G₁ᵀ ½h λ₁` from `v`, so that it satisfies the hidden constraints.
+    fn project(
+        &self,
+        t: f64,
+        q: &S::PerCoordinate<f64>,
+        v: &mut S::PerCoordinate<f64>,
+    ) -> Result<(), SingularMatrix> {
+        let (_, jacobian) = S::constraint_derivatives(&self.mechanics.constants, t, q);
+        let directions = self.directions(&jacobian);
+        let mut impulse = self.mechanics.constraint_rate(jacobian.as_ref(), v);
+        self.factor_gram(&jacobian, &directions)?.solve(&mut impulse);
+        for i in 0..S::N_COORDINATES {
+            v[i] -= (0..S::N_CONSTRAINTS).map(|c| directions[c][i] * impulse[c]).sum::<f64>();
+        }
+        Ok(())
+    }
+
+    fn directions(&self, jacobian: &S::PerJacobianEntry<f64>) -> ConstraintDirections<S> {
+        let mut directions: ConstraintDirections<S> = Array::from_fn(|_| Array::from_fn(|_| 0.0));
+        for entry in S::STRUCTURE.jacobian.q {
+            directions[entry.row][entry.col] =
+                entry.value(self.mechanics.constants.as_ref(), jacobian.as_ref());
+        }
+        for direction in directions.as_mut() {
+            self.mass.solve(direction);
+        }
+        directions
+    }
+
+    /// Factors `G M⁻¹ G₀ᵀ`, where `directions` holds `M⁻¹ G₀ᵀ`.
+    fn factor_gram(
+        &self,
+        jacobian: &S::PerJacobianEntry<f64>,
+        directions: &ConstraintDirections<S>,
+    ) -> Result<S::GramFactors, SingularMatrix> {
+        let mut gram: S::PerConstraint<S::PerConstraint<f64>> = Array::from_fn(|_| Array::from_fn(|_| 0.0));
+        for entry in S::STRUCTURE.jacobian.q {
+            let slope = entry.value(self.mechanics.constants.as_ref(), jacobian.as_ref());
+            for col in 0..S::N_CONSTRAINTS {
+                gram[entry.row][col] += slope * directions[col][entry.col];
+            }
+        }
+        S::GramFactors::factor(&gram)
+    }
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()))
+}

@@ -1,0 +1,162 @@
+//! Exponential variational integrators.
+
+use super::{IterationFailure, OneStep, Scheme, StepError, checked_finite};
+use crate::array::Array;
+use crate::linear::constraint_index;
+use crate::mechanics::{DiscreteLagrangian, Mechanics, Projected, State, StepStart, relative};
+use crate::newton;
+use crate::scheme::{Frequency, Interpolant, Linear, Quadrature, SchemeError, checked_step_size};
+use crate::system::MechanicalSystem;
+
+/// An exponential variational integrator with `K` intermediate points.
+///
+/// The action of a step is a weighted sum of the Lagrangian over `K` nodes of a curve that is linear
+/// ([`Linear`]) or trigonometric or hyperbolic ([`Frequency`], one for all coordinates or an array with one per
+/// coordinate). Symplectic on the constraint manifold, momentum preserving, of order 2 for symmetric nodes whatever
+/// `K` is (Marsden & West, Acta Numerica 10 (2001), thm. 2.3.1), and time-symmetric then.
+///
+/// ```
+/// use evi_core::prelude::*;
+/// let classical = Evi::midpoint(0.01);
+/// let exponential = Evi::new(Quadrature::<3>::lobatto(), 0.01).frequency(3.13);
+/// # let _ = (classical, exponential);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Evi<const K: usize, F = Linear> {
+    quadrature: Quadrature<K>,
+    h: f64,
+    interpolant: F,
+}
+
+impl Evi<1> {
+    /// The implicit midpoint member, `S = 1`.
+    pub const fn midpoint(h: f64) -> Self {
+        Self { quadrature: Quadrature::midpoint(), h, interpolant: Linear }
+    }
+}
+
+impl Evi<3> {
+    /// The member on Simpson's rule, `S = 3` equally spaced points.
+    pub fn simpson(h: f64) -> Self {
+        Self::new(Quadrature::uniform(), h)
+    }
+}
+
+impl<const K: usize> Evi<K> {
+    /// The member on the nodes of `quadrature`, with linear interpolation, for steps of size `h` (units of time;
+    /// negative steps go back in time).
+    pub const fn new(quadrature: Quadrature<K>, h: f64) -> Self {
+        Self { quadrature, h, interpolant: Linear }
+    }
+
+    /// Interpolates every coordinate with the same frequency.
+    pub fn frequency(self, frequency: impl Into<Frequency>) -> Evi<K, Frequency> {
+        Evi { quadrature: self.quadrature, h: self.h, interpolant: frequency.into() }
+    }
+
+    /// Interpolates coordinate `i` with `frequencies[i]`. Coordinates of one body should share theirs.
+    pub fn frequencies<const N: usize>(self, frequencies: [Frequency; N]) -> Evi<K, [Frequency; N]> {
+        Evi { quadrature: self.quadrature, h: self.h, interpolant: frequencies }
+    }
+}
+
+impl<S: MechanicalSystem, const K: usize, F: Interpolant<S>> Scheme<S> for Evi<K, F> {
+    type Step = EviStep<S, F, K>;
+
+    fn prepare(&self, mechanics: Mechanics<S>) -> Result<Self::Step, SchemeError> {
+        let h = checked_step_size(self.h)?;
+        let table = self.interpolant.table(&self.quadrature, h)?;
+        Ok(EviStep { action: DiscreteLagrangian::new(mechanics, table, self.quadrature, h) })
+    }
+}
+
+/// The one-step map of an [`Evi`] for a scene, with everything folded in that is constant for a run.
+pub struct EviStep<S: MechanicalSystem, F: Interpolant<S>, const K: usize> {
+    action: DiscreteLagrangian<S, F::Table<K>, K>,
+}
+
+impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> OneStep<S> for EviStep<S, F, K> {
+    fn h(&self) -> f64 {
+        self.action.h()
+    }
+
+    fn mechanics(&self) -> &Mechanics<S> {
+        &self.action.mechanics
+    }
+
+    fn step(&self, state: &State<S>) -> Result<State<S>, StepError> {
+        let h = self.action.h();
+        let start_of_curve = Array::from_fn(|i| h * state.v[i]);
+        let difference = self.solve(state.t, &state.q, &state.p, start_of_curve)?;
+        let t = state.t + h;
+        let q = Array::from_fn(|i| state.q[i] + difference[i]);
+        let momentum = self.action.end_momentum(state.t, &state.q, &difference);
+        let mean_velocity = Array::from_fn(|i| difference[i] / h);
+        let Projected { v, p } = self
+            .mechanics()
+            .project_momentum(t, &q, &momentum, mean_velocity)
+            .map_err(|cause| StepError::Projection { t, cause })?;
+        checked_finite(State { t, q, v, p })
+    }
+}
+
+impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
+    /// The two-step view: `q_next` from two consecutive configurations, the first at time `t_prev`.
+    ///
+    /// Solves `D₂L_d(q_prev, q_curr) + D₁L_d(q_curr, q_next) − h Gᵀ(q_curr) λ = 0`, `φ(q_next) = 0`.
+    ///
+    /// # Errors
+    /// [`StepError`] as for [`OneStep::step`].
+    pub fn next_configuration(
+        &self,
+        t_prev: f64,
+        q_prev: &S::PerCoordinate<f64>,
+        q_curr: &S::PerCoordinate<f64>,
+    ) -> Result<S::PerCoordinate<f64>, StepError> {
+        let difference = S::PerCoordinate::<f64>::from_fn(|i| q_curr[i] - q_prev[i]);
+        // The part of this momentum normal to the constraints at q_curr goes into the impulse: no projection needed.
+        let momentum = self.action.end_momentum(t_prev, q_prev, &difference);
+        let difference = self.solve(t_prev + self.action.h(), q_curr, &momentum, difference)?;
+        Ok(Array::from_fn(|i| q_curr[i] + difference[i]))
+    }
+
+    /// The difference `d = q₁ − q₀` of the step from `(q, p)`, by Newton's iteration from the guess `difference`.
+    #[inline]
+    fn solve(
+        &self,
+        t: f64,
+        q: &S::PerCoordinate<f64>,
+        p: &S::PerCoordinate<f64>,
+        mut difference: S::PerCoordinate<f64>,
+    ) -> Result<S::PerCoordinate<f64>, StepError> {
+        let (_, jacobian) = S::constraint_derivatives(&self.mechanics().constants, t, q);
+        let start = StepStart { t, q, p, jacobian };
+        let mut impulse = S::PerConstraint::<f64>::from_fn(|_| 0.0);
+        let mut constraint_residual = 0.0;
+        let mut smallest_pivot_ratio = 1.0_f64;
+        let iteration = newton::iterate(|correction| {
+            let (residual, kkt) = self.action.linearize(&start, &difference, &impulse);
+            constraint_residual = largest_constraint_residual::<S>(&residual);
+            let kkt = kkt.factor().map_err(|matrix| IterationFailure::Singular { correction, matrix })?;
+            smallest_pivot_ratio = smallest_pivot_ratio.min(kkt.pivot_ratio());
+            let mut update = residual;
+            kkt.solve(&mut update);
+            for i in 0..S::N_COORDINATES {
+                difference[i] -= update[i];
+            }
+            for c in 0..S::N_CONSTRAINTS {
+                impulse[c] -= update[constraint_index::<S>(c)];
+            }
+            let scale = kkt.scaled_length(q.as_ref()).max(kkt.scaled_length(difference.as_ref()));
+            Ok(relative(kkt.scaled_length(update.as_ref()), scale))
+        });
+        match iteration {
+            Ok(_) => Ok(difference),
+            Err(failure) => Err(IterationFailure::at(failure, t, constraint_residual, smallest_pivot_ratio)),
+        }
+    }
+}
+
+fn largest_constraint_residual<S: MechanicalSystem>(residual: &S::PerUnknown<f64>) -> f64 {
+    (0..S::N_CONSTRAINTS).fold(0.0, |largest: f64, c| largest.max(residual[constraint_index::<S>(c)].abs()))
+}

@@ -1,0 +1,137 @@
+//! One-step maps `(q, p) → (q, p)` and runs of many steps.
+//!
+//! A [`Scheme`] is what a user writes down (nodes, frequency, step size). Prepared for a scene, it is a
+//! [`OneStep`] map that holds everything that is constant for the run. A [`Simulation`] joins a scene with a scheme;
+//! a [`Run`] is a simulation at a state.
+
+mod evi;
+mod run;
+mod simulation;
+#[cfg(feature = "std")]
+mod trajectory;
+
+pub use evi::{Evi, EviStep};
+pub use run::Run;
+pub use simulation::{Simulation, StartError};
+#[cfg(feature = "std")]
+pub use trajectory::{Interrupted, Trajectory};
+
+use crate::linear::SingularMatrix;
+use crate::mechanics::{Mechanics, ProjectionError, State};
+use crate::newton::NotConverged;
+use crate::scheme::SchemeError;
+use crate::system::MechanicalSystem;
+
+/// A recipe for steps, independent of the scene.
+pub trait Scheme<S: MechanicalSystem> {
+    /// The one-step map of this scheme for `S`.
+    type Step: OneStep<S>;
+
+    /// Folds everything that is constant for a run into the one-step map.
+    ///
+    /// # Errors
+    /// [`SchemeError`] for a scheme that defines no step for this scene.
+    fn prepare(&self, mechanics: Mechanics<S>) -> Result<Self::Step, SchemeError>;
+}
+
+/// A map from the state at `t` to the state at `t + h`.
+pub trait OneStep<S: MechanicalSystem> {
+    /// Step size; negative for a map that goes back in time.
+    fn h(&self) -> f64;
+
+    /// The scene that moves.
+    fn mechanics(&self) -> &Mechanics<S>;
+
+    /// The state one step later.
+    ///
+    /// # Errors
+    /// [`StepError`] when there is no such state or it is not found; nothing has changed then.
+    fn step(&self, state: &State<S>) -> Result<State<S>, StepError>;
+}
+
+/// A step that could not be taken. The state before the step stands.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum StepError {
+    /// Newton's iteration found no end point: the step equations may have none near the start.
+    #[error(
+        "no solution of the step found from t = {t}: after {corrections} corrections the last one is \
+         {last_correction:e} of the configuration, the residual of the constraints {constraint_residual:e}, \
+         the smallest pivot ratio {smallest_pivot_ratio:e}. Try a smaller step size"
+    )]
+    NoSolution {
+        /// Time at the start of the step.
+        t: f64,
+        /// Number of Newton corrections.
+        corrections: usize,
+        /// Length of the last one relative to the configuration; not finite if the iteration diverged.
+        last_correction: f64,
+        /// Largest constraint residual at the last iterate.
+        constraint_residual: f64,
+        /// Smallest ratio of pivots met on the way.
+        smallest_pivot_ratio: f64,
+    },
+    /// The matrix of the step equations is singular: the constraints are dependent at this configuration, or the
+    /// mass matrix does not determine the motion.
+    #[error("singular step equations from t = {t}, correction {correction}: {matrix}")]
+    Singular {
+        /// Time at the start of the step.
+        t: f64,
+        /// Number of the Newton correction.
+        correction: usize,
+        /// The numbers of the matrix.
+        matrix: SingularMatrix,
+    },
+    /// The momentum at the end of the step could not be projected on the constraints.
+    #[error("the velocity at t = {t} cannot be projected on the constraints: {cause}")]
+    Projection {
+        /// Time at the end of the step.
+        t: f64,
+        /// Why.
+        cause: ProjectionError,
+    },
+    /// The end of the step is not finite.
+    #[error("the state at t = {t} is not finite")]
+    NotFinite {
+        /// Time at the end of the step.
+        t: f64,
+    },
+}
+
+/// Why a Newton iteration inside a step ended, before the numbers that explain it are gathered.
+pub(crate) enum IterationFailure {
+    Singular { correction: usize, matrix: SingularMatrix },
+    NotConverged(NotConverged),
+}
+
+impl From<NotConverged> for IterationFailure {
+    fn from(failure: NotConverged) -> Self {
+        Self::NotConverged(failure)
+    }
+}
+
+impl IterationFailure {
+    /// The step error of this failure, with the numbers at the last iterate.
+    pub(crate) fn at(self, t: f64, constraint_residual: f64, smallest_pivot_ratio: f64) -> StepError {
+        match self {
+            Self::Singular { correction, matrix } => StepError::Singular { t, correction, matrix },
+            Self::NotConverged(NotConverged { corrections, last_correction }) => StepError::NoSolution {
+                t,
+                corrections,
+                last_correction,
+                constraint_residual,
+                smallest_pivot_ratio,
+            },
+        }
+    }
+}
+
+/// The state, if every number in it is one.
+pub(crate) fn checked_finite<S: MechanicalSystem>(state: State<S>) -> Result<State<S>, StepError> {
+    let numbers = [state.q.as_ref(), state.v.as_ref(), state.p.as_ref()];
+    if numbers.into_iter().flatten().all(|number| number.is_finite()) {
+        Ok(state)
+    } else {
+        Err(StepError::NotFinite { t: state.t })
+    }
+}

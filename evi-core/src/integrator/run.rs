@@ -1,0 +1,125 @@
+//! A simulation at a state.
+
+#[cfg(feature = "std")]
+use super::trajectory::{Interrupted, Trajectory};
+use super::{OneStep, StepError};
+use crate::comparison::Solver;
+use crate::mechanics::{Mechanics, State};
+use crate::system::MechanicalSystem;
+
+/// A one-step map and the state that it has reached.
+///
+/// A step that fails leaves the run at the last state that was reached.
+pub struct Run<S: MechanicalSystem, M> {
+    map: M,
+    state: State<S>,
+    start_time: f64,
+    steps: u64,
+}
+
+impl<S: MechanicalSystem, M: OneStep<S>> Run<S, M> {
+    pub(crate) const fn new(map: M, state: State<S>) -> Self {
+        let start_time = state.t;
+        Self { map, state, start_time, steps: 0 }
+    }
+
+    /// The state reached.
+    pub const fn state(&self) -> &State<S> {
+        &self.state
+    }
+
+    /// Number of steps taken.
+    pub const fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    /// The one-step map.
+    pub const fn map(&self) -> &M {
+        &self.map
+    }
+
+    /// The scene's mechanics: energies, residuals, accelerations as functions of a state.
+    pub fn mechanics(&self) -> &Mechanics<S> {
+        self.map.mechanics()
+    }
+
+    /// Energy of the state reached.
+    pub fn energy(&self) -> f64 {
+        self.mechanics().energy(&self.state)
+    }
+
+    /// Takes one step.
+    ///
+    /// # Errors
+    /// [`StepError`]; the run then stands where it stood.
+    #[inline]
+    pub fn advance(&mut self) -> Result<&State<S>, StepError> {
+        let mut next = self.map.step(&self.state)?;
+        self.steps += 1;
+        // A product, since a sum of 1e6 step sizes loses six digits.
+        next.t = self.start_time + self.steps as f64 * self.map.h();
+        self.state = next;
+        Ok(&self.state)
+    }
+
+    /// Takes steps until the next one would end beyond `t` by more than half a step.
+    ///
+    /// # Errors
+    /// [`StepError`] of the first step that fails; the run stands before it.
+    pub fn advance_to(&mut self, t: f64) -> Result<&State<S>, StepError> {
+        for _ in 0..self.steps_to(t) {
+            self.advance()?;
+        }
+        Ok(&self.state)
+    }
+
+    /// Takes the steps of a time span and keeps every state, the present one first.
+    ///
+    /// # Errors
+    /// [`Interrupted`] with the states up to the step that failed.
+    #[cfg(feature = "std")]
+    pub fn integrate(&mut self, duration: f64) -> Result<Trajectory<S>, Interrupted<S>> {
+        let steps = self.steps_to(self.state.t + duration);
+        let mut trajectory = Trajectory::starting_at(self.state.clone(), steps);
+        for _ in 0..steps {
+            match self.advance() {
+                Ok(state) => trajectory.push(state.clone()),
+                Err(error) => return Err(Interrupted { error, trajectory }),
+            }
+        }
+        Ok(trajectory)
+    }
+
+    /// Number of whole steps nearest to the span from here to `t`; 0 if `t` lies on the other side.
+    fn steps_to(&self, t: f64) -> u64 {
+        let steps = (t - self.state.t) / self.map.h();
+        // The cast saturates: NaN and negative numbers become 0.
+        (steps + 0.5) as u64
+    }
+}
+
+impl<S: MechanicalSystem, M: OneStep<S>> Solver for Run<S, M> {
+    fn t(&self) -> f64 {
+        self.state.t
+    }
+
+    fn q(&self) -> &[f64] {
+        self.state.q.as_ref()
+    }
+
+    fn v(&self) -> &[f64] {
+        self.state.v.as_ref()
+    }
+
+    fn p(&self) -> &[f64] {
+        self.state.p.as_ref()
+    }
+
+    fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    fn advance_to(&mut self, t: f64) -> Result<(), StepError> {
+        Run::advance_to(self, t).map(|_| ())
+    }
+}

@@ -1,0 +1,211 @@
+//! A scene joined with a scheme, and the start of a run.
+
+use super::{OneStep, Run, Scheme};
+use crate::array::Array;
+use crate::mechanics::{Mechanics, ProjectionError, State};
+use crate::scheme::SchemeError;
+use crate::system::MechanicalSystem;
+
+/// A start is consistent when a constraint residual is below this fraction of what it would be for a
+/// displacement (or velocity) of full size: decimal data with 13 digits pass, shortened data do not.
+const CONSISTENCY: f64 = 1e-12;
+
+/// A scene and the scheme that integrates it.
+///
+/// ```
+/// # use evi_core::prelude::*;
+/// #[derive(MechanicalSystem)]
+/// #[evi(coordinates(theta), kinetic = 0.5 * der(theta).powi(2), potential = -rate.powi(2) * theta.cos())]
+/// struct Pendulum { rate: f64 }
+///
+/// let simulation = Simulation::new(Pendulum { rate: 3.0 }, Evi::midpoint(0.01));
+/// let mut run = simulation.start([1.0], [0.0])?;
+/// run.advance_to(10.0)?;
+/// assert!((run.energy() + 9.0 * 1.0_f64.cos()).abs() < 1e-3);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Simulation<S, F> {
+    system: S,
+    scheme: F,
+}
+
+/// A run that cannot start.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum StartError {
+    /// The scheme defines no step.
+    #[error(transparent)]
+    Scheme(#[from] SchemeError),
+    /// A number of the start, or the energy there, is not finite.
+    #[error("{quantity} {index} of the start is not finite: {value}")]
+    NotFinite {
+        /// `position`, `velocity`, or `energy` (then `index` is 0).
+        quantity: &'static str,
+        /// Index in its vector.
+        index: usize,
+        /// The value.
+        value: f64,
+    },
+    /// The position violates a constraint.
+    #[error(
+        "the start violates constraint `{constraint}`: residual {residual:e}, allowed {allowed:e}. \
+         `start_projected` moves the start onto the constraints"
+    )]
+    InconsistentPosition {
+        /// Name of the constraint.
+        constraint: &'static str,
+        /// `φ(t₀, q₀)`.
+        residual: f64,
+        /// Largest residual that passes.
+        allowed: f64,
+    },
+    /// The velocity leads away from a constraint.
+    #[error(
+        "the start velocity leaves constraint `{constraint}`: G v + ∂φ/∂t is {residual:e} of its terms, \
+         allowed {allowed:e}. `start_projected` projects the velocity"
+    )]
+    InconsistentVelocity {
+        /// Name of the constraint.
+        constraint: &'static str,
+        /// `|G v + ∂φ/∂t| / (‖G‖ ‖v‖ + |∂φ/∂t|)`.
+        residual: f64,
+        /// Largest residual that passes.
+        allowed: f64,
+    },
+    /// The mass matrix and the constraints do not determine the motion at the start, or the start cannot be
+    /// projected on the constraints.
+    #[error("start: {0}")]
+    Projection(#[from] ProjectionError),
+}
+
+impl<S: MechanicalSystem, F: Scheme<S>> Simulation<S, F> {
+    /// A simulation of `system` with `scheme`.
+    pub const fn new(system: S, scheme: F) -> Self {
+        Self { system, scheme }
+    }
+
+    /// The scene.
+    pub const fn system(&self) -> &S {
+        &self.system
+    }
+
+    /// A run from positions and velocities at time 0 that satisfy the constraints.
+    ///
+    /// # Errors
+    /// [`StartError`] for numbers that are not finite, an inconsistent start, a scheme that defines no step, or a
+    /// configuration where mass matrix and constraints do not determine the motion.
+    pub fn start(
+        &self,
+        q: impl Into<S::PerCoordinate<f64>>,
+        v: impl Into<S::PerCoordinate<f64>>,
+    ) -> Result<Run<S, F::Step>, StartError> {
+        self.start_at(0.0, q, v)
+    }
+
+    /// A run from a consistent start at time `t`.
+    ///
+    /// # Errors
+    /// As for [`start`](Self::start).
+    pub fn start_at(
+        &self,
+        t: f64,
+        q: impl Into<S::PerCoordinate<f64>>,
+        v: impl Into<S::PerCoordinate<f64>>,
+    ) -> Result<Run<S, F::Step>, StartError> {
+        let step = self.scheme.prepare(Mechanics::new(&self.system))?;
+        let (q, v) = (q.into(), v.into());
+        let mechanics = step.mechanics();
+        check_finite(mechanics, t, &q, &v)?;
+        check_position(mechanics, t, &q)?;
+        check_velocity(mechanics, t, &q, &v)?;
+        let state = project_velocity(mechanics, t, q, v)?;
+        Ok(Run::new(step, state))
+    }
+
+    /// A run from the consistent start nearest to `(q, v)` in the metric of the mass matrix, at time `t`.
+    ///
+    /// # Errors
+    /// As for [`start`](Self::start), except for inconsistency, which is mended.
+    pub fn start_projected(
+        &self,
+        t: f64,
+        q: impl Into<S::PerCoordinate<f64>>,
+        v: impl Into<S::PerCoordinate<f64>>,
+    ) -> Result<Run<S, F::Step>, StartError> {
+        let step = self.scheme.prepare(Mechanics::new(&self.system))?;
+        let (q, v) = (q.into(), v.into());
+        let mechanics = step.mechanics();
+        check_finite(mechanics, t, &q, &v)?;
+        let q = mechanics.project_configuration(t, q, &v)?;
+        let state = project_velocity(mechanics, t, q, v)?;
+        Ok(Run::new(step, state))
+    }
+}
+
+/// Removes what round-off left of the velocity normal to the constraints, and finds the momentum.
+fn project_velocity<S: MechanicalSystem>(
+    mechanics: &Mechanics<S>,
+    t: f64,
+    q: S::PerCoordinate<f64>,
+    v: S::PerCoordinate<f64>,
+) -> Result<State<S>, StartError> {
+    let projected = mechanics.project_velocity(t, &q, v)?;
+    Ok(State { t, q, v: projected.v, p: projected.p })
+}
+
+fn check_finite<S: MechanicalSystem>(
+    mechanics: &Mechanics<S>,
+    t: f64,
+    q: &S::PerCoordinate<f64>,
+    v: &S::PerCoordinate<f64>,
+) -> Result<(), StartError> {
+    let time = [t];
+    let energy = [mechanics.energy_at(t, q, v)];
+    let numbers: [(&'static str, &[f64]); 4] =
+        [("time", &time), ("position", q.as_ref()), ("velocity", v.as_ref()), ("energy", &energy)];
+    for (quantity, values) in numbers {
+        if let Some(index) = values.iter().position(|value| !value.is_finite()) {
+            return Err(StartError::NotFinite { quantity, index, value: values[index] });
+        }
+    }
+    Ok(())
+}
+
+/// Compares `φ` with `‖G‖ ‖q‖`, what a displacement of the size of the configuration would make of it.
+fn check_position<S: MechanicalSystem>(
+    mechanics: &Mechanics<S>,
+    t: f64,
+    q: &S::PerCoordinate<f64>,
+) -> Result<(), StartError> {
+    let (residual, jacobian) = S::constraint_derivatives(&mechanics.constants, t, q);
+    let mut allowed = S::PerConstraint::<f64>::from_fn(|_| 0.0);
+    for entry in S::STRUCTURE.jacobian.q {
+        let slope = entry.value(mechanics.constants.as_ref(), jacobian.as_ref());
+        allowed[entry.row] += CONSISTENCY * (slope * q[entry.col]).abs();
+    }
+    for c in 0..S::N_CONSTRAINTS {
+        // Written so that a NaN fails.
+        if !(residual[c].abs() <= allowed[c]) {
+            let (constraint, residual, allowed) = (S::CONSTRAINTS[c], residual[c], allowed[c]);
+            return Err(StartError::InconsistentPosition { constraint, residual, allowed });
+        }
+    }
+    Ok(())
+}
+
+fn check_velocity<S: MechanicalSystem>(
+    mechanics: &Mechanics<S>,
+    t: f64,
+    q: &S::PerCoordinate<f64>,
+    v: &S::PerCoordinate<f64>,
+) -> Result<(), StartError> {
+    let residual = mechanics.hidden_constraint_residual_at(t, q, v);
+    for c in 0..S::N_CONSTRAINTS {
+        if !(residual[c] <= CONSISTENCY) {
+            let (constraint, residual, allowed) = (S::CONSTRAINTS[c], residual[c], CONSISTENCY);
+            return Err(StartError::InconsistentVelocity { constraint, residual, allowed });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,76 @@
+//! Exponential variational integrators for constrained mechanical systems.
+//!
+//! Write a Lagrangian and holonomic constraints on a struct, and integrate it:
+//!
+//! ```
+//! use evi_core::prelude::*;
+//!
+//! /// Planar double pendulum: point masses, massless rods, y upwards; SI units.
+//! #[derive(MechanicalSystem)]
+//! #[evi(
+//!     coordinates(x1, y1, x2, y2),
+//!     kinetic   = 0.5 * m1 * (der(x1).powi(2) + der(y1).powi(2))
+//!               + 0.5 * m2 * (der(x2).powi(2) + der(y2).powi(2)),
+//!     potential = g * (m1 * y1 + m2 * y2),
+//!     constraint(rod1: x1.powi(2) + y1.powi(2) == l1.powi(2)),
+//!     constraint(rod2: (x2 - x1).powi(2) + (y2 - y1).powi(2) == l2.powi(2)),
+//! )]
+//! struct DoublePendulum { m1: f64, m2: f64, l1: f64, l2: f64, g: f64 }
+//!
+//! let system = DoublePendulum { m1: 1.0, m2: 1.0, l1: 1.0, l2: 1.0, g: 9.81 };
+//! let mut run = Simulation::new(system, Evi::midpoint(0.01)).start([1.0, 0.0, 2.0, 0.0], [0.0; 4])?;
+//! let trajectory = run.integrate(1.0)?;
+//! let rods = run.mechanics().constraint_residual(trajectory.last());
+//! assert!(rods.iter().all(|residual| residual.abs() < 1e-14));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! The derive differentiates the equations at compile time and implements [`system::MechanicalSystem`]; the
+//! integrators are generic over it and monomorphised for each scene.
+//!
+//! # Layers
+//!
+//! [`array`], [`scalar`], [`system`] and [`scheme`] stand at the bottom; above them `newton` and [`linear`], then
+//! [`mechanics`] (energies, projections, the equations of one step), then [`integrator`] (one-step maps and runs),
+//! and beside the integrators [`baseline`], [`generic`], [`comparison`] and [`report`]. Imports point downwards.
+//!
+//! # Features
+//!
+//! | feature | default | effect |
+//! |---|---|---|
+//! | `std` | yes | trajectories on the heap; elementary functions of the platform. Without it the crate is `no_std` |
+//! | `derive` | yes | re-exports `#[derive(MechanicalSystem)]` |
+//! | `generic` | no | [`scalar::Scalar`] for the dual numbers of num-dual |
+
+#![cfg_attr(not(feature = "std"), no_std)]
+
+// Lets the derive's `::evi_core` paths resolve inside this crate's own tests.
+#[cfg(test)]
+extern crate self as evi_core;
+
+pub mod array;
+pub mod baseline;
+pub mod comparison;
+pub mod generic;
+pub mod integrator;
+pub mod linear;
+pub mod mechanics;
+mod newton;
+#[cfg(feature = "std")]
+pub mod report;
+pub mod scalar;
+pub mod scheme;
+pub mod system;
+
+#[doc(hidden)]
+pub mod __private;
+
+/// What a simulation needs: the derive, schemes, and runs.
+pub mod prelude {
+    pub use crate::integrator::{Evi, OneStep, Run, Scheme, Simulation, StartError, StepError};
+    pub use crate::mechanics::State;
+    pub use crate::scheme::{Frequency, Quadrature, SchemeError};
+    pub use crate::system::MechanicalSystem;
+    #[cfg(feature = "derive")]
+    pub use evi_macros::MechanicalSystem;
+}

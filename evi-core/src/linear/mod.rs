@@ -1,0 +1,33 @@
+//! Linear solves of a step: in, a square matrix by rows; out, factors that solve for right-hand sides.
+//!
+//! [`Factorization`] is the contract between the integrators and a scene's own elimination. What stands here for
+//! every scene is the pivoted dense one, [`DenseLu`].
+
+mod dense;
+mod kkt;
+
+pub use dense::DenseLu;
+pub(crate) use kkt::{Kkt, constraint_index, unknowns};
+
+/// Factors of a square matrix `A`.
+pub trait Factorization<V, M>: Sized {
+    /// Factors the matrix that is given by rows.
+    ///
+    /// # Errors
+    /// [`SingularMatrix`] when the smallest pivot is lost in the round-off of the largest.
+    fn factor(matrix: &M) -> Result<Self, SingularMatrix>;
+
+    /// Overwrites the right-hand side `b` with the solution of `A x = b`.
+    fn solve(&self, rhs: &mut V);
+
+    /// Smallest pivot over largest, in `[0, 1]`: small values announce a singular matrix.
+    fn pivot_ratio(&self) -> f64;
+}
+
+/// A matrix is singular to working precision.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("the matrix is singular: smallest over largest pivot is {pivot_ratio:e}")]
+pub struct SingularMatrix {
+    /// Smallest pivot over largest; NaN when the matrix has entries that are not finite.
+    pub pivot_ratio: f64,
+}

@@ -1,0 +1,166 @@
+//! The Legendre transform on the constraint manifold, and projections onto the manifold.
+
+use super::Mechanics;
+use crate::array::Array;
+use crate::linear::{SingularMatrix, constraint_index, unknowns};
+use crate::newton::{self, NotConverged};
+use crate::system::{LagrangianGradient, MechanicalSystem};
+
+/// A momentum with the constraint impulse removed, and the velocity that belongs to it.
+pub(crate) struct Projected<S: MechanicalSystem> {
+    pub(crate) v: S::PerCoordinate<f64>,
+    pub(crate) p: S::PerCoordinate<f64>,
+}
+
+/// A projection onto the constraint manifold that failed.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ProjectionError {
+    /// Mass matrix and constraint Jacobian do not determine the projection.
+    #[error("mass matrix and constraints do not determine the motion: {0}")]
+    Singular(#[from] SingularMatrix),
+    /// Newton's iteration did not converge.
+    #[error("the projection did not converge: relative correction {last_correction:e} after {corrections}")]
+    NotConverged {
+        /// Number of corrections applied.
+        corrections: usize,
+        /// Relative length of the last one.
+        last_correction: f64,
+    },
+}
+
+impl From<NotConverged> for ProjectionError {
+    fn from(failure: NotConverged) -> Self {
+        let NotConverged { corrections, last_correction } = failure;
+        Self::NotConverged { corrections, last_correction }
+    }
+}
+
+impl<S: MechanicalSystem> Mechanics<S> {
+    /// Removes from `momentum` the impulse `Gᵀ N` that makes the motion leave the constraints.
+    ///
+    /// Solves `∂L/∂v(t, q, v) + Gᵀ N = momentum`, `G v + ∂φ/∂t = 0` for `(v, N)` and returns `v` and
+    /// `p = momentum − Gᵀ N` (Marsden & West, Acta Numerica 10 (2001), sec. 3.5; the velocity step of RATTLE). Linear
+    /// in `(v, N)` for every `L` that is quadratic in `v`: then one solve. `v` is the first guess.
+    #[inline]
+    pub(crate) fn project_momentum(
+        &self,
+        t: f64,
+        q: &S::PerCoordinate<f64>,
+        momentum: &S::PerCoordinate<f64>,
+        mut v: S::PerCoordinate<f64>,
+    ) -> Result<Projected<S>, ProjectionError> {
+        let (_, jacobian) = S::constraint_derivatives(&self.constants, t, q);
+        let mut impulse = S::PerConstraint::<f64>::from_fn(|_| 0.0);
+        let mut correct = || -> Result<f64, ProjectionError> {
+            let (gradient, hessian) = S::lagrangian_derivatives(&self.constants, t, q, &v);
+            let kkt = self.mass_kkt(hessian.as_ref(), jacobian.as_ref()).factor()?;
+            let rate = self.constraint_rate(jacobian.as_ref(), &v);
+            let mut correction = unknowns::<S>(|i| momentum[i] - gradient.momentum[i], |c| -rate[c]);
+            kkt.solve(&mut correction);
+            for i in 0..S::N_COORDINATES {
+                v[i] += correction[i];
+            }
+            // The impulse enters linearly: its value, not an increment, belongs to the corrected velocity.
+            impulse = Array::from_fn(|c| correction[constraint_index::<S>(c)]);
+            Ok(relative(kkt.scaled_length(correction.as_ref()), kkt.scaled_length(v.as_ref())))
+        };
+        if S::STRUCTURE.is_quadratic_in_velocity() {
+            correct()?;
+        } else {
+            newton::iterate(|_| correct())?;
+        }
+        let mut constraint_momentum = S::PerCoordinate::<f64>::from_fn(|_| 0.0);
+        self.add_constraint_force(jacobian.as_ref(), impulse.as_ref(), constraint_momentum.as_mut());
+        Ok(Projected { v, p: Array::from_fn(|i| momentum[i] - constraint_momentum[i]) })
+    }
+
+    /// The configuration on the manifold nearest to `q` in the metric of the mass matrix at `(q, v)`.
+    ///
+    /// Newton's iteration on `M δq + Gᵀ μ = 0`, `G δq = −φ`, with `G` at the current point.
+    pub(crate) fn project_configuration(
+        &self,
+        t: f64,
+        mut q: S::PerCoordinate<f64>,
+        v: &S::PerCoordinate<f64>,
+    ) -> Result<S::PerCoordinate<f64>, ProjectionError> {
+        if S::N_CONSTRAINTS == 0 {
+            return Ok(q);
+        }
+        newton::iterate(|_| -> Result<f64, ProjectionError> {
+            let (_, hessian) = S::lagrangian_derivatives(&self.constants, t, &q, v);
+            let (residual, jacobian) = S::constraint_derivatives(&self.constants, t, &q);
+            let kkt = self.mass_kkt(hessian.as_ref(), jacobian.as_ref()).factor()?;
+            let mut correction = unknowns::<S>(|_| 0.0, |c| -residual[c]);
+            kkt.solve(&mut correction);
+            for i in 0..S::N_COORDINATES {
+                q[i] += correction[i];
+            }
+            Ok(relative(kkt.scaled_length(correction.as_ref()), kkt.scaled_length(q.as_ref())))
+        })?;
+        Ok(q)
+    }
+
+    /// The velocity that satisfies `G v + ∂φ/∂t = 0` nearest to `v` in the metric of the mass matrix, and its
+    /// momentum `p = ∂L/∂v`.
+    pub(crate) fn project_velocity(
+        &self,
+        t: f64,
+        q: &S::PerCoordinate<f64>,
+        v: S::PerCoordinate<f64>,
+    ) -> Result<Projected<S>, ProjectionError> {
+        let momentum = S::lagrangian_gradient(&self.constants, t, q, &v).momentum;
+        self.project_momentum(t, q, &momentum, v)
+    }
+
+    /// Accelerations and multipliers of the continuous motion at `(t, q, v)`: the index-1 equations
+    ///
+    /// ```text
+    /// M q̈ + Gᵀ λ = ∂L/∂q − (∂²L/∂v∂q) v − ∂²L/∂v∂t
+    /// G q̈         = −γ
+    /// ```
+    ///
+    /// so that `d/dt ∂L/∂v − ∂L/∂q + Gᵀ λ = 0`. At the states of an integrator, `λ` has the order of the integrator;
+    /// the multipliers inside its step do not.
+    ///
+    /// # Errors
+    /// [`SingularMatrix`] where mass matrix and constraints do not determine the acceleration.
+    pub fn acceleration(
+        &self,
+        t: f64,
+        q: &S::PerCoordinate<f64>,
+        v: &S::PerCoordinate<f64>,
+    ) -> Result<Acceleration<S>, SingularMatrix> {
+        let (LagrangianGradient { mut force, .. }, hessian) =
+            S::lagrangian_derivatives(&self.constants, t, q, v);
+        for entry in S::STRUCTURE.hessian.vq {
+            force[entry.row] -= entry.value(self.constants.as_ref(), hessian.as_ref()) * v[entry.col];
+        }
+        for entry in S::STRUCTURE.hessian.vt {
+            force[entry.row] -= entry.value(self.constants.as_ref(), hessian.as_ref());
+        }
+        let (_, jacobian) = S::constraint_derivatives(&self.constants, t, q);
+        let curvature = S::constraint_curvature(&self.constants, t, q, v);
+        let kkt = self.mass_kkt(hessian.as_ref(), jacobian.as_ref()).factor()?;
+        let mut solution = unknowns::<S>(|i| force[i], |c| -curvature[c]);
+        kkt.solve(&mut solution);
+        Ok(Acceleration {
+            acceleration: Array::from_fn(|i| solution[i]),
+            multipliers: Array::from_fn(|c| solution[constraint_index::<S>(c)]),
+        })
+    }
+}
+
+/// Second derivatives of the motion and the forces that keep it on the constraints.
+pub struct Acceleration<S: MechanicalSystem> {
+    /// `q̈`.
+    pub acceleration: S::PerCoordinate<f64>,
+    /// `λ`: the constraint force is `−Gᵀ λ`. Scaling a constraint scales its multiplier inversely.
+    pub multipliers: S::PerConstraint<f64>,
+}
+
+/// `length / reference`; zero for a vanishing length, whatever the reference.
+#[inline]
+pub(crate) fn relative(length: f64, reference: f64) -> f64 {
+    if length == 0.0 { 0.0 } else { length / reference }
+}

@@ -1,0 +1,66 @@
+//! A point of a motion.
+
+use core::fmt;
+
+use crate::system::MechanicalSystem;
+
+/// Time, configuration, momentum, and the velocity that belongs to the momentum.
+///
+/// `p = ∂L/∂v(t, q, v)`, `φ(t, q) = 0` and `G v + ∂φ/∂t = 0` to round-off; only a start or a step makes a state.
+pub struct State<S: MechanicalSystem> {
+    pub(crate) t: f64,
+    pub(crate) q: S::PerCoordinate<f64>,
+    pub(crate) v: S::PerCoordinate<f64>,
+    pub(crate) p: S::PerCoordinate<f64>,
+}
+
+impl<S: MechanicalSystem> State<S> {
+    /// Time.
+    pub const fn t(&self) -> f64 {
+        self.t
+    }
+
+    /// Configuration.
+    pub const fn q(&self) -> &S::PerCoordinate<f64> {
+        &self.q
+    }
+
+    /// Velocity.
+    pub const fn v(&self) -> &S::PerCoordinate<f64> {
+        &self.v
+    }
+
+    /// Momentum.
+    pub const fn p(&self) -> &S::PerCoordinate<f64> {
+        &self.p
+    }
+}
+
+// Written out, since a derive would demand the same of `S`, which is a type-level name only.
+impl<S: MechanicalSystem> Clone for State<S> {
+    fn clone(&self) -> Self {
+        Self { t: self.t, q: self.q.clone(), v: self.v.clone(), p: self.p.clone() }
+    }
+}
+
+impl<S: MechanicalSystem> fmt::Debug for State<S> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter
+            .debug_struct("State")
+            .field("t", &self.t)
+            .field("q", &self.q.as_ref())
+            .field("v", &self.v.as_ref())
+            .field("p", &self.p.as_ref())
+            .finish()
+    }
+}
+
+impl<S: MechanicalSystem> PartialEq for State<S> {
+    /// Equality of every number.
+    fn eq(&self, other: &Self) -> bool {
+        self.t == other.t
+            && self.q.as_ref() == other.q.as_ref()
+            && self.v.as_ref() == other.v.as_ref()
+            && self.p.as_ref() == other.p.as_ref()
+    }
+}

@@ -1,0 +1,175 @@
+//! The constrained discrete Euler-Lagrange equations of one step in position-momentum form.
+//!
+//! The discrete Lagrangian of a rule `(cⱼ, wⱼ)` on the interpolant between `q₀` and `q₁` is
+//!
+//! ```text
+//! L_d(q₀, q₁) = h Σⱼ wⱼ L(t₀ + cⱼ h, xⱼ, vⱼ)
+//! ```
+//!
+//! A step from `(q₀, p₀)` solves, for the difference `d = q₁ − q₀` and the impulse `Λ = h·L` of the constraint force,
+//!
+//! ```text
+//! h (−D₁L_d(q₀, q₁) − p₀) + G₀ᵀ Λ = 0        φ(t₁, q₁) = 0
+//! ```
+//!
+//! (Marsden & West, Acta Numerica 10 (2001), sec. 3.5; the first row times `h`, so that every entry of the matrix
+//! stays of order one as `h → 0`). `p⁻ = D₂L_d(q₀, q₁)` is the momentum that arrives at the end of the step.
+
+use super::Mechanics;
+use crate::array::Array;
+use crate::linear::{Kkt, unknowns};
+use crate::scheme::{InterpolationTable, NodeCoefficients, Quadrature, interpolate};
+use crate::system::{LagrangianGradient, MechanicalSystem};
+
+/// The discrete Lagrangian of a scene for one step size.
+pub(crate) struct DiscreteLagrangian<S: MechanicalSystem, T, const K: usize> {
+    pub(crate) mechanics: Mechanics<S>,
+    table: T,
+    quadrature: Quadrature<K>,
+    h: f64,
+}
+
+/// Where a step starts, with what stays fixed during its Newton iteration.
+pub(crate) struct StepStart<'a, S: MechanicalSystem> {
+    pub(crate) t: f64,
+    pub(crate) q: &'a S::PerCoordinate<f64>,
+    pub(crate) p: &'a S::PerCoordinate<f64>,
+    /// The varying entries of `G₀ = G(t₀, q₀)`.
+    pub(crate) jacobian: S::PerJacobianEntry<f64>,
+}
+
+impl<S: MechanicalSystem, T: InterpolationTable, const K: usize> DiscreteLagrangian<S, T, K> {
+    pub(crate) fn new(mechanics: Mechanics<S>, table: T, quadrature: Quadrature<K>, h: f64) -> Self {
+        Self { mechanics, table, quadrature, h }
+    }
+
+    /// Step size.
+    #[inline]
+    pub(crate) fn h(&self) -> f64 {
+        self.h
+    }
+
+    /// The residual of the step equations at `(d, Λ)` and their derivative
+    ///
+    /// ```text
+    /// [ h A   G₀ᵀ ]      A = −D₁D₂ L_d: rows from slot 0, columns from slot 1.
+    /// [ G₁    0   ]
+    /// ```
+    ///
+    /// `A` is not symmetric when `L` couples `q` and `v`, and `G₁` moves with the iterate: hence LU, not LDLᵀ.
+    #[inline]
+    pub(crate) fn linearize(
+        &self,
+        start: &StepStart<'_, S>,
+        difference: &S::PerCoordinate<f64>,
+        impulse: &S::PerConstraint<f64>,
+    ) -> (S::PerUnknown<f64>, Kkt<S>) {
+        let constants = &self.mechanics.constants;
+        let h = self.h;
+        let mut kkt = Kkt::zero();
+        let mut start_momentum = S::PerCoordinate::<f64>::from_fn(|_| 0.0);
+        self.for_each_node(start.t, start.q, difference, |node, weight, t, x, v| {
+            let (gradient, hessian) = S::lagrangian_derivatives(constants, t, x, v);
+            self.subtract_d1(node, weight, &gradient, &mut start_momentum);
+            self.subtract_d2d1(node, weight, hessian.as_ref(), &mut kkt);
+        });
+        let end = Array::from_fn(|i| start.q[i] + difference[i]);
+        let (residual, jacobian) = S::constraint_derivatives(constants, start.t + h, &end);
+        kkt.set_upper_jacobian(constants.as_ref(), start.jacobian.as_ref());
+        kkt.set_lower_jacobian(constants.as_ref(), jacobian.as_ref());
+        let mut momentum_row = S::PerCoordinate::<f64>::from_fn(|i| h * (start_momentum[i] - start.p[i]));
+        self.mechanics.add_constraint_force(start.jacobian.as_ref(), impulse.as_ref(), momentum_row.as_mut());
+        (unknowns::<S>(|i| momentum_row[i], |c| residual[c]), kkt)
+    }
+
+    /// `p⁻ = D₂L_d(q₀, q₀ + d) = Σⱼ wⱼ (h g₂ ∂L/∂q + h g₂' ∂L/∂v)`.
+    #[inline]
+    pub(crate) fn end_momentum(
+        &self,
+        t: f64,
+        q: &S::PerCoordinate<f64>,
+        difference: &S::PerCoordinate<f64>,
+    ) -> S::PerCoordinate<f64> {
+        let mut end_momentum = S::PerCoordinate::<f64>::from_fn(|_| 0.0);
+        self.for_each_node(t, q, difference, |node, weight, t, x, v| {
+            let gradient = S::lagrangian_gradient(&self.mechanics.constants, t, x, v);
+            for i in 0..S::N_COORDINATES {
+                let c = self.table.coefficients(node, i);
+                end_momentum[i] +=
+                    weight * (self.h * c.end() * gradient.force[i] + c.end_rate() * gradient.momentum[i]);
+            }
+        });
+        end_momentum
+    }
+
+    /// Calls `visit(node, weight, t, x, v)` at every node of the interpolant from `q` to `q + difference`.
+    #[inline]
+    fn for_each_node(
+        &self,
+        t: f64,
+        q: &S::PerCoordinate<f64>,
+        difference: &S::PerCoordinate<f64>,
+        mut visit: impl FnMut(usize, f64, f64, &S::PerCoordinate<f64>, &S::PerCoordinate<f64>),
+    ) {
+        let half_sum = S::PerCoordinate::<f64>::from_fn(|i| q[i] + 0.5 * difference[i]);
+        let inverse_h = 1.0 / self.h;
+        for node in 0..K {
+            let (x, v) = interpolate::<S>(&self.table, node, &half_sum, difference, inverse_h);
+            let node_time = t + (0.5 + self.quadrature.offsets()[node]) * self.h;
+            visit(node, self.quadrature.weights()[node], node_time, &x, &v);
+        }
+    }
+
+    /// Subtracts this node's part of `D₁L_d = Σⱼ wⱼ (h g₁ ∂L/∂q + h g₁' ∂L/∂v)`.
+    #[inline]
+    fn subtract_d1(
+        &self,
+        node: usize,
+        weight: f64,
+        gradient: &LagrangianGradient<S, f64>,
+        sum: &mut S::PerCoordinate<f64>,
+    ) {
+        for i in 0..S::N_COORDINATES {
+            let c = self.table.coefficients(node, i);
+            sum[i] -=
+                weight * (self.h * c.start() * gradient.force[i] + c.start_rate() * gradient.momentum[i]);
+        }
+    }
+
+    /// Subtracts this node's part of `h D₁D₂L_d`, entry by entry of the Hessian's pattern:
+    /// `wⱼ (h² g₁ L_qq g₂ + h g₁ L_qv hg₂' + h hg₁' L_vq g₂ + hg₁' L_vv hg₂')`.
+    #[inline]
+    fn subtract_d2d1(&self, node: usize, weight: f64, hessian: &[f64], kkt: &mut Kkt<S>) {
+        let constants = self.mechanics.constants.as_ref();
+        let pattern = S::STRUCTURE.hessian;
+        let h = self.h;
+        for entry in pattern.qq {
+            let value = weight * h * h * entry.value(constants, hessian);
+            let (row, col) = self.coefficients_of(node, entry.row, entry.col);
+            kkt.add_block(entry.row, entry.col, -row.start() * value * col.end());
+            if entry.row != entry.col {
+                kkt.add_block(entry.col, entry.row, -col.start() * value * row.end());
+            }
+        }
+        for entry in pattern.vq {
+            let value = weight * h * entry.value(constants, hessian);
+            let (row, col) = self.coefficients_of(node, entry.row, entry.col);
+            kkt.add_block(entry.row, entry.col, -row.start_rate() * value * col.end());
+            // ∂²L/∂q∂v is the transpose: its row is the coordinate, its column the velocity.
+            kkt.add_block(entry.col, entry.row, -col.start() * value * row.end_rate());
+        }
+        for entry in pattern.vv {
+            let value = weight * entry.value(constants, hessian);
+            let (row, col) = self.coefficients_of(node, entry.row, entry.col);
+            kkt.add_block(entry.row, entry.col, -row.start_rate() * value * col.end_rate());
+            if entry.row != entry.col {
+                kkt.add_block(entry.col, entry.row, -col.start_rate() * value * row.end_rate());
+            }
+        }
+    }
+
+    #[inline]
+    fn coefficients_of(&self, node: usize, row: usize, col: usize) -> (NodeCoefficients, NodeCoefficients) {
+        (self.table.coefficients(node, row), self.table.coefficients(node, col))
+    }
+}

@@ -1,0 +1,97 @@
+//! Newton's iteration and its stopping rule, once for every implicit equation of the crate.
+//!
+//! In: a function that applies one correction and returns its relative length. Out: the number of corrections, or
+//! how it failed. The equations, their matrix and the scale of "relative" are the caller's.
+
+/// Stop when the correction after this one would be below this fraction of the unknowns: a quarter of round-off.
+const TARGET: f64 = 0.25 * f64::EPSILON;
+/// A correction that no longer shrinks ends the iteration only below this length (Hairer, McLachlan,
+/// Razakarivony, BIT 48 (2008) 231: iterate until the update stops decreasing); above it, it may grow once.
+const STAGNATION: f64 = 1e-12;
+/// Corrections that shrink by less than this factor have stagnated.
+const STAGNATION_RATIO: f64 = 0.5;
+/// Newton from the predictors used here takes 3 to 6 corrections; a solution not found by then is not near.
+const MAX_CORRECTIONS: usize = 30;
+
+/// A converged iteration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Converged {
+    /// Number of corrections applied.
+    pub(crate) corrections: usize,
+}
+
+/// An iteration that did not converge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct NotConverged {
+    /// Number of corrections applied.
+    pub(crate) corrections: usize,
+    /// Relative length of the last one; NaN or infinite when the iteration left the numbers.
+    pub(crate) last_correction: f64,
+}
+
+/// Applies corrections of relative length `r₁, r₂, ...` until `rₖ · min(1, rₖ / rₖ₋₁)` is below round-off.
+///
+/// The product predicts the next correction of a linearly convergent iteration, and overestimates it for a
+/// quadratically convergent one; the correction that meets the rule has been applied.
+///
+/// # Errors
+/// `E` from `correct`, or what `E` makes of [`NotConverged`].
+#[inline]
+pub(crate) fn iterate<E: From<NotConverged>>(
+    mut correct: impl FnMut(usize) -> Result<f64, E>,
+) -> Result<Converged, E> {
+    let mut previous: Option<f64> = None;
+    for corrections in 1..=MAX_CORRECTIONS {
+        let length = correct(corrections)?;
+        if !length.is_finite() {
+            return Err(NotConverged { corrections, last_correction: length }.into());
+        }
+        let ratio = previous.map_or(1.0, |previous| length / previous);
+        // A vanishing correction gives 0/0 above: it has converged, whatever went before.
+        if length == 0.0 || length * ratio.min(1.0) <= TARGET {
+            return Ok(Converged { corrections });
+        }
+        if length <= STAGNATION && ratio > STAGNATION_RATIO && previous.is_some() {
+            return Ok(Converged { corrections });
+        }
+        previous = Some(length);
+    }
+    let last_correction = previous.unwrap_or(f64::NAN);
+    Err(NotConverged { corrections: MAX_CORRECTIONS, last_correction }.into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn lengths(sequence: &'static [f64]) -> Result<Converged, NotConverged> {
+        iterate(|k| Ok(sequence[(k - 1).min(sequence.len() - 1)]))
+    }
+
+    #[test]
+    fn quadratic_convergence_stops_when_the_next_correction_is_round_off() {
+        assert_eq!(lengths(&[1e-2, 1e-5, 1e-11, f64::NAN]), Ok(Converged { corrections: 3 }));
+    }
+
+    #[test]
+    fn slow_linear_convergence_is_not_mistaken_for_convergence() {
+        let result = iterate::<NotConverged>(|k| Ok(0.9_f64.powi(k as i32)));
+        assert_eq!(result.unwrap_err().corrections, MAX_CORRECTIONS);
+    }
+
+    #[test]
+    fn round_off_ends_the_iteration() {
+        assert_eq!(lengths(&[1e-12, 9e-13]), Ok(Converged { corrections: 2 }));
+    }
+
+    #[test]
+    fn a_correction_may_grow_while_it_is_large() {
+        assert_eq!(lengths(&[1e-3, 2e-3, 1e-6, 1e-12, 1e-18]), Ok(Converged { corrections: 4 }));
+    }
+
+    #[test]
+    fn values_that_are_not_numbers_are_reported() {
+        let error = lengths(&[1.0, f64::INFINITY]).unwrap_err();
+        assert_eq!((error.corrections, error.last_correction), (2, f64::INFINITY));
+    }
+}

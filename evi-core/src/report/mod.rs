@@ -1,0 +1,5 @@
+//! Statistics of runs.
+
+mod drift;
+
+pub use drift::Drift;

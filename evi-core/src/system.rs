@@ -1,0 +1,272 @@
+//! What the derive emits for a scene: the contract between the symbolic compiler and the integrators.
+//!
+//! A scene is a Lagrangian `L(t, q, v)` with `n` coordinates `q`, velocities `v`, and `m` holonomic constraints
+//! `φ(t, q) = 0` with Jacobian `G = ∂φ/∂q` (`m × n`). The derive emits its kernels, its structure and the storage
+//! types of its index sets; nothing here loops over nodes or iterates.
+
+use crate::array::Array;
+use crate::linear::Factorization;
+use crate::scalar::Scalar;
+
+/// A mechanical system with compile-time structure; implemented by `#[derive(MechanicalSystem)]`.
+///
+/// Kernels take the scene's *constants*: every subexpression of the equations that depends on parameters alone,
+/// computed once by [`constants`](Self::constants) and never again during a run.
+pub trait MechanicalSystem: Sized {
+    /// Number of coordinates, `n`.
+    const N_COORDINATES: usize = Self::COORDINATES.len();
+    /// Number of constraints, `m`.
+    const N_CONSTRAINTS: usize = Self::CONSTRAINTS.len();
+    /// Names of the coordinates, in the order of `q`.
+    const COORDINATES: &'static [&'static str];
+    /// Names of the constraints, in the order of `φ`.
+    const CONSTRAINTS: &'static [&'static str];
+    /// Names of the struct's fields that the equations use, in the order of [`parameters`](Self::parameters).
+    const PARAMETERS: &'static [&'static str];
+    /// What is zero, constant, or varying in the derivatives of `L` and `φ`, and what evaluating them costs.
+    const STRUCTURE: Structure;
+
+    /// One value per coordinate.
+    type PerCoordinate<X: Clone>: Array<X>;
+    /// One value per constraint.
+    type PerConstraint<X: Clone>: Array<X>;
+    /// One value per unknown of the step: coordinates, then constraints.
+    type PerUnknown<X: Clone>: Array<X>;
+    /// One value per parameter.
+    type PerParameter<X: Clone>: Array<X>;
+    /// One value per constant subexpression.
+    type PerConstant<X: Clone>: Array<X>;
+    /// One value per varying entry of the Hessian of `L`.
+    type PerHessianEntry<X: Clone>: Array<X>;
+    /// One value per varying entry of the Jacobian of `φ`.
+    type PerJacobianEntry<X: Clone>: Array<X>;
+
+    /// Solver of the saddle-point systems of the scene, `(n + m) × (n + m)`.
+    type KktFactors: Factorization<Self::PerUnknown<f64>, Self::PerUnknown<Self::PerUnknown<f64>>>;
+    /// Solver of systems with the mass matrix, `n × n`.
+    type MassFactors: Factorization<Self::PerCoordinate<f64>, Self::PerCoordinate<Self::PerCoordinate<f64>>>;
+    /// Solver of systems with the Gram matrix `G M⁻¹ Gᵀ` of the constraints, `m × m`.
+    type GramFactors: Factorization<Self::PerConstraint<f64>, Self::PerConstraint<Self::PerConstraint<f64>>>;
+
+    /// The parameters: values of the struct's fields.
+    fn parameters(&self) -> Self::PerParameter<f64>;
+
+    /// Every subexpression of the kernels that depends on parameters alone.
+    fn constants<T: Scalar>(parameters: &Self::PerParameter<T>) -> Self::PerConstant<T>;
+
+    /// `L(t, q, v)`.
+    fn lagrangian<T: Scalar>(
+        constants: &Self::PerConstant<T>,
+        t: T,
+        q: &Self::PerCoordinate<T>,
+        v: &Self::PerCoordinate<T>,
+    ) -> T;
+
+    /// First derivatives of `L`.
+    fn lagrangian_gradient<T: Scalar>(
+        constants: &Self::PerConstant<T>,
+        t: T,
+        q: &Self::PerCoordinate<T>,
+        v: &Self::PerCoordinate<T>,
+    ) -> LagrangianGradient<Self, T>;
+
+    /// First and second derivatives of `L`, fused.
+    fn lagrangian_derivatives<T: Scalar>(
+        constants: &Self::PerConstant<T>,
+        t: T,
+        q: &Self::PerCoordinate<T>,
+        v: &Self::PerCoordinate<T>,
+    ) -> (LagrangianGradient<Self, T>, Self::PerHessianEntry<T>);
+
+    /// `φ(t, q)`.
+    fn constraints<T: Scalar>(
+        constants: &Self::PerConstant<T>,
+        t: T,
+        q: &Self::PerCoordinate<T>,
+    ) -> Self::PerConstraint<T>;
+
+    /// `φ(t, q)` and the varying entries of its derivatives, fused.
+    fn constraint_derivatives<T: Scalar>(
+        constants: &Self::PerConstant<T>,
+        t: T,
+        q: &Self::PerCoordinate<T>,
+    ) -> (Self::PerConstraint<T>, Self::PerJacobianEntry<T>);
+
+    /// `γ(t, q, v) = vᵀ φ_qq v + 2 φ_qt v + φ_tt`, so that `d²φ/dt² = G q̈ + γ`.
+    fn constraint_curvature<T: Scalar>(
+        constants: &Self::PerConstant<T>,
+        t: T,
+        q: &Self::PerCoordinate<T>,
+        v: &Self::PerCoordinate<T>,
+    ) -> Self::PerConstraint<T>;
+}
+
+/// First derivatives of a Lagrangian.
+pub struct LagrangianGradient<S: MechanicalSystem, T: Clone> {
+    /// `∂L/∂q`: the generalized force.
+    pub force: S::PerCoordinate<T>,
+    /// `∂L/∂v`: the generalized momentum.
+    pub momentum: S::PerCoordinate<T>,
+}
+
+/// What the compiler knows about a scene's equations.
+#[derive(Clone, Copy, Debug)]
+pub struct Structure {
+    /// Nonzero second derivatives of `L`.
+    pub hessian: HessianPattern,
+    /// Nonzero derivatives of `φ`.
+    pub jacobian: JacobianPattern,
+    /// On what the mass matrix `∂²L/∂v²` depends.
+    pub mass: Dependence,
+    /// On what `L` depends.
+    pub lagrangian: Dependence,
+    /// On what `φ` depends.
+    pub constraints: Dependence,
+    /// Operations of each kernel.
+    pub operations: KernelOperations,
+}
+
+impl Structure {
+    /// Stands where the derive found mistakes and the equations are not known.
+    #[doc(hidden)]
+    pub const UNKNOWN: Self = {
+        const NOTHING: Dependence = Dependence { on_q: false, on_v: false, on_t: false };
+        const NONE: Operations = Operations { additions: 0, multiplications: 0, divisions: 0, functions: 0 };
+        Self {
+            hessian: HessianPattern { qq: &[], vq: &[], vv: &[], vt: &[] },
+            jacobian: JacobianPattern { q: &[], t: &[] },
+            mass: NOTHING,
+            lagrangian: NOTHING,
+            constraints: NOTHING,
+            operations: KernelOperations {
+                constants: NONE,
+                lagrangian: NONE,
+                lagrangian_gradient: NONE,
+                lagrangian_derivatives: NONE,
+                constraints: NONE,
+                constraint_derivatives: NONE,
+                constraint_curvature: NONE,
+            },
+        }
+    };
+
+    /// Whether `L` is a polynomial of degree at most two in `v`, so that the Legendre transform is linear.
+    pub const fn is_quadratic_in_velocity(&self) -> bool {
+        !self.mass.on_v
+    }
+
+    /// Whether `L = ½ vᵀ M v − V(t, q)` with constant `M`.
+    pub const fn is_separable_with_constant_mass(&self) -> bool {
+        self.mass.is_constant() && self.hessian.vq.is_empty() && self.hessian.vt.is_empty()
+    }
+}
+
+/// The variables that a quantity depends on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Dependence {
+    /// Depends on the coordinates.
+    pub on_q: bool,
+    /// Depends on the velocities.
+    pub on_v: bool,
+    /// Depends on time.
+    pub on_t: bool,
+}
+
+impl Dependence {
+    /// Whether the quantity depends on parameters alone.
+    pub const fn is_constant(&self) -> bool {
+        !(self.on_q || self.on_v || self.on_t)
+    }
+}
+
+/// The structurally nonzero second derivatives of `L`, block by block.
+#[derive(Clone, Copy, Debug)]
+pub struct HessianPattern {
+    /// `∂²L/∂q²`, lower triangle (`row ≥ col`).
+    pub qq: &'static [Entry],
+    /// `∂²L/∂v∂q`: row of `v`, column of `q`.
+    pub vq: &'static [Entry],
+    /// `∂²L/∂v²`, lower triangle.
+    pub vv: &'static [Entry],
+    /// `∂²L/∂v∂t`: row of `v`, column 0.
+    pub vt: &'static [Entry],
+}
+
+/// The structurally nonzero derivatives of `φ`.
+#[derive(Clone, Copy, Debug)]
+pub struct JacobianPattern {
+    /// `G = ∂φ/∂q`: row of the constraint, column of the coordinate.
+    pub q: &'static [Entry],
+    /// `∂φ/∂t`: row of the constraint, column 0.
+    pub t: &'static [Entry],
+}
+
+/// Place and origin of one structurally nonzero matrix entry.
+#[derive(Clone, Copy, Debug)]
+pub struct Entry {
+    /// Row in the block.
+    pub row: usize,
+    /// Column in the block.
+    pub col: usize,
+    /// Where its value comes from.
+    pub value: EntryValue,
+}
+
+impl Entry {
+    /// The entry's value, from the scene's constants or from what its kernel returned.
+    #[inline]
+    pub fn value<T: Copy>(&self, constants: &[T], varying: &[T]) -> T {
+        match self.value {
+            EntryValue::Constant(slot) => constants[slot],
+            EntryValue::Varying(index) => varying[index],
+        }
+    }
+}
+
+/// Where the value of a matrix entry comes from.
+#[derive(Clone, Copy, Debug)]
+pub enum EntryValue {
+    /// Constant of the scene, at this index.
+    Constant(usize),
+    /// Varying entry, at this index of the kernel's output.
+    Varying(usize),
+}
+
+/// Operations of each emitted kernel.
+#[derive(Clone, Copy, Debug)]
+pub struct KernelOperations {
+    /// [`MechanicalSystem::constants`].
+    pub constants: Operations,
+    /// [`MechanicalSystem::lagrangian`].
+    pub lagrangian: Operations,
+    /// [`MechanicalSystem::lagrangian_gradient`].
+    pub lagrangian_gradient: Operations,
+    /// [`MechanicalSystem::lagrangian_derivatives`].
+    pub lagrangian_derivatives: Operations,
+    /// [`MechanicalSystem::constraints`].
+    pub constraints: Operations,
+    /// [`MechanicalSystem::constraint_derivatives`].
+    pub constraint_derivatives: Operations,
+    /// [`MechanicalSystem::constraint_curvature`].
+    pub constraint_curvature: Operations,
+}
+
+/// Operations of straight-line code, by kind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Operations {
+    /// Additions and subtractions.
+    pub additions: usize,
+    /// Multiplications.
+    pub multiplications: usize,
+    /// Divisions.
+    pub divisions: usize,
+    /// Elementary functions and square roots.
+    pub functions: usize,
+}
+
+impl Operations {
+    /// All operations together.
+    pub const fn total(&self) -> usize {
+        self.additions + self.multiplications + self.divisions + self.functions
+    }
+}

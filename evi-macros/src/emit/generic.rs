@@ -1,0 +1,159 @@
+//! The user's expressions once more, in the user's order and with the user's spans, generic over the scalar.
+//!
+//! Only numbers, constants and `der(..)` are rewritten. Nothing of the graph is used: this copy is the oracle that the
+//! kernels are tested against.
+
+use proc_macro2::{Group, Ident, TokenStream, TokenTree};
+use quote::{ToTokens, format_ident, quote, quote_spanned};
+
+use crate::model::{LagrangianSource, Model};
+use crate::syntax::{Declaration, Expression};
+
+/// The implementation of `GenericSystem`.
+pub(super) fn generic_system(declaration: &Declaration, model: &Model) -> TokenStream {
+    let struct_name = &declaration.name;
+    let (n_coordinates, n_constraints) = (model.coordinates.len(), model.constraints.len());
+    let rewriter = Rewriter { constants: model.named_constants.iter().map(TokenStream::to_string).collect() };
+    let parameters: TokenStream = model
+        .parameters
+        .iter()
+        .map(|&field| &declaration.fields[field].name)
+        .map(|name| quote!(let #name = T::from_f64(self.#name);))
+        .collect();
+    let positions: TokenStream =
+        model.coordinates.iter().enumerate().map(|(i, name)| quote!(let #name = __q[#i];)).collect();
+    let velocities: TokenStream = model
+        .coordinates
+        .iter()
+        .enumerate()
+        .map(|(i, name)| (i, velocity_name(name)))
+        .map(|(i, name)| quote!(let #name = __v[#i];))
+        .collect();
+    let lets = |with_velocities: bool| -> TokenStream {
+        let usable = model.source.lets.iter().filter(|shared| with_velocities || !shared.has_velocity);
+        usable
+            .map(|shared| (&shared.name, rewriter.expression(&shared.value)))
+            .map(|(name, value)| quote!(let #name = #value;))
+            .collect()
+    };
+    let (all_lets, position_lets) = (lets(true), lets(false));
+    let lagrangian = match &model.source.lagrangian {
+        LagrangianSource::Whole(lagrangian) => rewriter.expression(lagrangian),
+        LagrangianSource::Difference { kinetic, potential } => {
+            let (kinetic, potential) = (rewriter.expression(kinetic), rewriter.expression(potential));
+            quote!((#kinetic) - (#potential))
+        }
+    };
+    let residuals = model.source.constraints.iter().enumerate().map(|(c, (left, right))| {
+        let (left, right) = (rewriter.expression(left), rewriter.expression(right));
+        quote!(__residuals[#c] = (#left) - (#right);)
+    });
+    quote! {
+        #[automatically_derived]
+        #[allow(unused, non_snake_case, clippy::all)]
+        impl ::evi_core::__private::GenericSystem for #struct_name {
+            fn n_coordinates(&self) -> usize {
+                #n_coordinates
+            }
+
+            fn n_constraints(&self) -> usize {
+                #n_constraints
+            }
+
+            fn lagrangian<T: ::evi_core::__private::Scalar>(&self, t: T, __q: &[T], __v: &[T]) -> T {
+                #parameters #positions #velocities #all_lets
+                #lagrangian
+            }
+
+            fn constraints<T: ::evi_core::__private::Scalar>(&self, t: T, __q: &[T], __residuals: &mut [T]) {
+                #parameters #positions #position_lets
+                #(#residuals)*
+            }
+        }
+    }
+}
+
+fn velocity_name(coordinate: &Ident) -> Ident {
+    format_ident!("__der_{coordinate}")
+}
+
+/// Rewrites the tokens of an expression for the scalar `T`.
+struct Rewriter {
+    /// Constants that rustc resolves, as written.
+    constants: Vec<String>,
+}
+
+impl Rewriter {
+    /// The expression with numbers and constants as `T::from_f64(..)`, and `der(x)` as the name of x's velocity.
+    fn expression(&self, expression: &Expression) -> TokenStream {
+        self.tokens(expression.tokens.clone())
+    }
+
+    fn tokens(&self, tokens: TokenStream) -> TokenStream {
+        let tokens: Vec<TokenTree> = tokens.into_iter().collect();
+        let mut rewritten = TokenStream::new();
+        let mut rest = tokens.as_slice();
+        while let Some(token) = rest.first() {
+            let path_length = path_length(rest);
+            let path: TokenStream = rest[..path_length].iter().cloned().collect();
+            let consumed = match rest {
+                [TokenTree::Ident(powi), TokenTree::Group(exponent), ..] if powi == "powi" => {
+                    rewritten.extend(quote!(#powi #exponent));
+                    2
+                }
+                [TokenTree::Ident(der), TokenTree::Group(coordinate), ..] if der == "der" => {
+                    rewritten.extend(
+                        innermost_name(coordinate).map(|name| velocity_name(&name)).to_token_stream(),
+                    );
+                    2
+                }
+                _ if self.constants.contains(&path.to_string()) => {
+                    rewritten.extend(quote_spanned!(token.span()=> T::from_f64(#path as f64)));
+                    path_length
+                }
+                [TokenTree::Literal(number), ..] => {
+                    rewritten.extend(quote_spanned!(number.span()=> T::from_f64(#number as f64)));
+                    1
+                }
+                [TokenTree::Group(group), ..] => {
+                    let mut inner = Group::new(group.delimiter(), self.tokens(group.stream()));
+                    inner.set_span(group.span());
+                    rewritten.extend([TokenTree::Group(inner)]);
+                    1
+                }
+                _ => {
+                    rewritten.extend([token.clone()]);
+                    1
+                }
+            };
+            rest = &rest[consumed..];
+        }
+        rewritten
+    }
+}
+
+/// Number of tokens of the path `a::b::c` at the beginning of the tokens; 0 if there is none.
+fn path_length(tokens: &[TokenTree]) -> usize {
+    let is_colons = |at: usize| {
+        matches!(tokens.get(at..at + 2), Some([TokenTree::Punct(a), TokenTree::Punct(b)])
+            if a.as_char() == ':' && b.as_char() == ':')
+    };
+    let mut length = if is_colons(0) { 2 } else { 0 };
+    while matches!(tokens.get(length), Some(TokenTree::Ident(_))) {
+        length += 1;
+        if !is_colons(length) {
+            return length;
+        }
+        length += 2;
+    }
+    0
+}
+
+/// The coordinate in the parentheses of `der(x)` or `der((x))`.
+fn innermost_name(group: &Group) -> Option<Ident> {
+    match group.stream().into_iter().next()? {
+        TokenTree::Ident(name) => Some(name),
+        TokenTree::Group(inner) => innermost_name(&inner),
+        TokenTree::Punct(_) | TokenTree::Literal(_) => None,
+    }
+}

@@ -1,0 +1,260 @@
+//! The implementation of `MechanicalSystem`.
+
+use proc_macro2::{Ident, TokenStream};
+use quote::quote;
+
+use super::generic::generic_system;
+use super::kernel::Writer;
+use super::storage::{Sizes, associated_types};
+use crate::expr::{Dependence, Graph};
+use crate::model::Model;
+use crate::schedule::{ConstantSlots, Operations, Program, Programs};
+use crate::structure::{Entry, EntryValue};
+use crate::syntax::Declaration;
+
+/// Everything that the derive emits for a well-formed struct.
+pub(crate) fn implementation(
+    declaration: &Declaration,
+    model: &Model,
+    graph: &Graph,
+    programs: &Programs,
+) -> TokenStream {
+    let struct_name = &declaration.name;
+    let generic_system = generic_system(declaration, model);
+    let names = names(declaration, model);
+    let structure = structure(programs);
+    let sizes = Sizes {
+        n_coordinates: model.coordinates.len(),
+        n_constraints: model.constraints.len(),
+        n_parameters: model.parameters.len(),
+        n_constants: programs.slots.len(),
+        n_hessian_entries: programs.structure.hessian_entries.len(),
+        n_jacobian_entries: programs.structure.jacobian_entries.len(),
+    };
+    let types = associated_types(&sizes);
+    let fields = model.parameters.iter().map(|&field| &declaration.fields[field].name);
+    let kernels = Kernels { graph, model, slots: &programs.slots };
+    let kernels = [
+        kernels.constants(&programs.constants),
+        kernels.lagrangian(&programs.lagrangian),
+        kernels.lagrangian_gradient(&programs.lagrangian_gradient),
+        kernels.lagrangian_derivatives(&programs.lagrangian_derivatives),
+        kernels.constraints(&programs.constraints),
+        kernels.constraint_derivatives(&programs.constraint_derivatives),
+        kernels.constraint_curvature(&programs.constraint_curvature),
+    ];
+    quote! {
+        const _: () = {
+            #[automatically_derived]
+            #[allow(unused_variables, unused_parens, clippy::all)]
+            impl ::evi_core::__private::MechanicalSystem for #struct_name {
+                #names
+                #structure
+                #types
+
+                #[inline]
+                fn parameters(&self) -> Self::PerParameter<f64> {
+                    [#(self.#fields),*]
+                }
+
+                #(#kernels)*
+            }
+
+            #generic_system
+        };
+    }
+}
+
+/// The names of coordinates, constraints and parameters.
+fn names(declaration: &Declaration, model: &Model) -> TokenStream {
+    let text = |name: &Ident| name.to_string();
+    let coordinates = model.coordinates.iter().map(text);
+    let constraints = model.constraints.iter().map(|(name, _)| text(name));
+    let parameters = model.parameters.iter().map(|&field| text(&declaration.fields[field].name));
+    quote! {
+        const COORDINATES: &'static [&'static str] = &[#(#coordinates),*];
+        const CONSTRAINTS: &'static [&'static str] = &[#(#constraints),*];
+        const PARAMETERS: &'static [&'static str] = &[#(#parameters),*];
+    }
+}
+
+/// The structure and the operation counts.
+fn structure(programs: &Programs) -> TokenStream {
+    let known = &programs.structure;
+    let (qq, vq) = (entries(&known.hessian_qq), entries(&known.hessian_vq));
+    let (vv, vt) = (entries(&known.hessian_vv), entries(&known.hessian_vt));
+    let (jacobian_q, jacobian_t) = (entries(&known.jacobian_q), entries(&known.jacobian_t));
+    let (mass, lagrangian) = (dependence(known.mass), dependence(known.lagrangian));
+    let constraint_dependence = dependence(known.constraints);
+    let constants = operations(programs.constants.operations);
+    let lagrangian_operations = operations(programs.lagrangian.operations);
+    let lagrangian_gradient = operations(programs.lagrangian_gradient.operations);
+    let lagrangian_derivatives = operations(programs.lagrangian_derivatives.operations);
+    let constraints = operations(programs.constraints.operations);
+    let constraint_derivatives = operations(programs.constraint_derivatives.operations);
+    let constraint_curvature = operations(programs.constraint_curvature.operations);
+    quote! {
+        const STRUCTURE: ::evi_core::__private::Structure = ::evi_core::__private::Structure {
+            hessian: ::evi_core::__private::HessianPattern { qq: #qq, vq: #vq, vv: #vv, vt: #vt },
+            jacobian: ::evi_core::__private::JacobianPattern { q: #jacobian_q, t: #jacobian_t },
+            mass: #mass,
+            lagrangian: #lagrangian,
+            constraints: #constraint_dependence,
+            operations: ::evi_core::__private::KernelOperations {
+                constants: #constants,
+                lagrangian: #lagrangian_operations,
+                lagrangian_gradient: #lagrangian_gradient,
+                lagrangian_derivatives: #lagrangian_derivatives,
+                constraints: #constraints,
+                constraint_derivatives: #constraint_derivatives,
+                constraint_curvature: #constraint_curvature,
+            },
+        };
+    }
+}
+
+fn entries(entries: &[Entry]) -> TokenStream {
+    let entries = entries.iter().map(|&Entry { row, col, value }| {
+        let value = match value {
+            EntryValue::Constant(slot) => quote!(Constant(#slot)),
+            EntryValue::Varying(index) => quote!(Varying(#index)),
+        };
+        quote!(::evi_core::__private::Entry { row: #row, col: #col, value: ::evi_core::__private::EntryValue::#value })
+    });
+    quote!(&[#(#entries),*])
+}
+
+fn dependence(Dependence { on_q, on_v, on_t }: Dependence) -> TokenStream {
+    quote!(::evi_core::__private::Dependence { on_q: #on_q, on_v: #on_v, on_t: #on_t })
+}
+
+fn operations(operations: Operations) -> TokenStream {
+    let Operations { additions, multiplications, divisions, functions } = operations;
+    quote!(::evi_core::__private::Operations {
+        additions: #additions,
+        multiplications: #multiplications,
+        divisions: #divisions,
+        functions: #functions,
+    })
+}
+
+/// The functions of the trait.
+struct Kernels<'a> {
+    graph: &'a Graph,
+    model: &'a Model,
+    slots: &'a ConstantSlots,
+}
+
+impl Kernels<'_> {
+    fn constants(&self, program: &Program) -> TokenStream {
+        let n_parameters = self.model.parameters.len();
+        let nothing_given = ConstantSlots::default();
+        let writer = Writer {
+            slots: &nothing_given,
+            inputs: quote!(p: &[T; #n_parameters]),
+            arguments: quote!(p),
+            ..self.writer(false)
+        };
+        let (statements, outputs) = writer.body(program);
+        quote! {
+            #[inline]
+            fn constants<T: ::evi_core::__private::Scalar>(p: &Self::PerParameter<T>) -> Self::PerConstant<T> {
+                #statements
+                [#(#outputs),*]
+            }
+        }
+    }
+
+    fn lagrangian(&self, program: &Program) -> TokenStream {
+        let (statements, outputs) = self.writer(true).body(program);
+        self.function("lagrangian", true, quote!(T), quote!(#statements #(#outputs)*))
+    }
+
+    fn lagrangian_gradient(&self, program: &Program) -> TokenStream {
+        let (statements, outputs) = self.writer(true).body(program);
+        let gradient = self.gradient(&outputs);
+        let returned = quote!(::evi_core::__private::LagrangianGradient<Self, T>);
+        self.function("lagrangian_gradient", true, returned, quote!(#statements #gradient))
+    }
+
+    fn lagrangian_derivatives(&self, program: &Program) -> TokenStream {
+        let (statements, outputs) = self.writer(true).body(program);
+        let (gradient, entries) = outputs.split_at(2 * self.model.coordinates.len());
+        let gradient = self.gradient(gradient);
+        let returned = quote!((::evi_core::__private::LagrangianGradient<Self, T>, Self::PerHessianEntry<T>));
+        self.function(
+            "lagrangian_derivatives",
+            true,
+            returned,
+            quote!(#statements (#gradient, [#(#entries),*])),
+        )
+    }
+
+    fn constraints(&self, program: &Program) -> TokenStream {
+        let (statements, outputs) = self.writer(false).body(program);
+        let returned = quote!(Self::PerConstraint<T>);
+        self.function("constraints", false, returned, quote!(#statements [#(#outputs),*]))
+    }
+
+    fn constraint_derivatives(&self, program: &Program) -> TokenStream {
+        let (statements, outputs) = self.writer(false).body(program);
+        let (residuals, entries) = outputs.split_at(self.model.constraints.len());
+        let returned = quote!((Self::PerConstraint<T>, Self::PerJacobianEntry<T>));
+        self.function(
+            "constraint_derivatives",
+            false,
+            returned,
+            quote!(#statements ([#(#residuals),*], [#(#entries),*])),
+        )
+    }
+
+    fn constraint_curvature(&self, program: &Program) -> TokenStream {
+        let (statements, outputs) = self.writer(true).body(program);
+        let returned = quote!(Self::PerConstraint<T>);
+        self.function("constraint_curvature", true, returned, quote!(#statements [#(#outputs),*]))
+    }
+
+    /// A kernel of the constants `c`, the time `t`, positions `q` and, if it has them, velocities `v`.
+    fn function(
+        &self,
+        name: &str,
+        has_velocities: bool,
+        returned: TokenStream,
+        body: TokenStream,
+    ) -> TokenStream {
+        let name = quote::format_ident!("{name}");
+        let velocities = has_velocities.then(|| quote!(v: &Self::PerCoordinate<T>));
+        quote! {
+            #[inline]
+            fn #name<T: ::evi_core::__private::Scalar>(
+                c: &Self::PerConstant<T>,
+                t: T,
+                q: &Self::PerCoordinate<T>,
+                #velocities
+            ) -> #returned {
+                #body
+            }
+        }
+    }
+
+    fn writer(&self, has_velocities: bool) -> Writer<'_> {
+        let (n_constants, n_coordinates) = (self.slots.len(), self.model.coordinates.len());
+        let velocities = has_velocities.then(|| (quote!(, v: &[T; #n_coordinates]), quote!(, v)));
+        let (declared, passed) = velocities.unwrap_or_default();
+        Writer {
+            graph: self.graph,
+            named_constants: &self.model.named_constants,
+            parameters: &self.model.parameters,
+            slots: self.slots,
+            inputs: quote!(c: &[T; #n_constants], t: T, q: &[T; #n_coordinates] #declared),
+            arguments: quote!(c, t, q #passed),
+        }
+    }
+
+    fn gradient(&self, outputs: &[TokenStream]) -> TokenStream {
+        let (force, momentum) = outputs.split_at(self.model.coordinates.len());
+        quote! {
+            ::evi_core::__private::LagrangianGradient { force: [#(#force),*], momentum: [#(#momentum),*] }
+        }
+    }
+}

@@ -1,0 +1,12 @@
+//! From programs to Rust: the only folder that writes `quote`.
+//!
+//! Emitted code names `::evi_core::__private` and its own items, nothing else, and stands in an anonymous constant.
+
+mod fallback;
+mod generic;
+mod implementation;
+mod kernel;
+mod storage;
+
+pub(crate) use fallback::{compile_errors, fallback};
+pub(crate) use implementation::implementation;

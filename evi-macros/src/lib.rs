@@ -1,0 +1,49 @@
+//! `#[derive(MechanicalSystem)]`: from a Lagrangian written on a struct to specialised code.
+//!
+//! A symbolic compiler in stages, one folder each, joined in `pipeline`. Expressions live in one
+//! hash-consed graph (`expr`) from parsing to emission; it is never expanded to a tree. The expansion is a pure function
+//! of the tokens of the struct.
+
+mod diagnostics;
+mod differentiate;
+mod emit;
+mod expr;
+mod mechanics;
+mod model;
+mod pipeline;
+mod schedule;
+mod simplify;
+mod structure;
+mod syntax;
+
+#[cfg(test)]
+mod tests;
+
+/// Implements `evi_core::system::MechanicalSystem` for a struct that carries a Lagrangian.
+///
+/// ```text
+/// #[derive(MechanicalSystem)]
+/// #[evi(
+///     coordinates(x, y),
+///     kinetic = 0.5 * m * (der(x).powi(2) + der(y).powi(2)),
+///     potential = m * g * y,
+///     constraint(rod: x.powi(2) + y.powi(2) == l.powi(2)),
+/// )]
+/// struct Pendulum { m: f64, g: f64, l: f64 }
+/// ```
+///
+/// | item | meaning |
+/// |---|---|
+/// | `coordinates(x, y)` | the coordinates `q`, in this order |
+/// | `lagrangian = EXPR`, or `kinetic = EXPR, potential = EXPR` | `L(t, q, v)`, or `L = T − V` |
+/// | `constraint(NAME: LHS == RHS)` | the holonomic constraint `φ = LHS − RHS = 0` |
+/// | `let NAME = EXPR` | a shared subexpression, usable below |
+///
+/// `EXPR` is a Rust expression in the struct's `f64` fields, coordinates, `der(coordinate)` for velocities, the
+/// time `t`, numbers, and constants (a path or a `SCREAMING_CASE` name, passed on to rustc) with `+ - * /`, unary minus,
+/// blocks with `let`, and `.powi(integer) .powf(e) .sqrt() .sin() .cos() .tan() .exp() .ln() .asin() .acos() .atan()
+/// .atan2(x) .sinh() .cosh() .tanh() .abs()`. Every field that an equation names is a parameter of the system.
+#[proc_macro_derive(MechanicalSystem, attributes(evi))]
+pub fn derive_mechanical_system(input: proc_macro::TokenStream) -> proc_macro::TokenStream {
+    pipeline::expand(input.into()).into()
+}

@@ -1,0 +1,121 @@
+//! What a Lagrangian system needs to be integrated: the only stage that knows what a Lagrangian is.
+//!
+//! In: a [`Model`]. Out: [`Equations`], every derivative that the integrators evaluate, simplified; entries that vanish
+//! structurally are absent.
+
+use crate::differentiate::{partial, rate};
+use crate::expr::{ExprId, Graph, Symbol};
+use crate::model::Model;
+use crate::simplify::Simplifier;
+
+/// The Lagrangian, the constraints, and their derivatives.
+pub(crate) struct Equations {
+    pub(crate) lagrangian: ExprId,
+    /// `∂L/∂q`.
+    pub(crate) force: Vec<ExprId>,
+    /// `∂L/∂v`.
+    pub(crate) momentum: Vec<ExprId>,
+    /// `∂²L/∂q²`, lower triangle.
+    pub(crate) hessian_qq: Vec<Partial>,
+    /// `∂²L/∂v∂q`.
+    pub(crate) hessian_vq: Vec<Partial>,
+    /// `∂²L/∂v²`, lower triangle.
+    pub(crate) hessian_vv: Vec<Partial>,
+    /// `∂²L/∂v∂t`, column 0.
+    pub(crate) hessian_vt: Vec<Partial>,
+    /// `φ`.
+    pub(crate) constraints: Vec<ExprId>,
+    /// `∂φ/∂q`.
+    pub(crate) jacobian_q: Vec<Partial>,
+    /// `∂φ/∂t`, column 0.
+    pub(crate) jacobian_t: Vec<Partial>,
+    /// `d²φ/dt²` without its acceleration term.
+    pub(crate) curvature: Vec<ExprId>,
+}
+
+/// A derivative that does not vanish, and its place.
+#[derive(Clone, Copy)]
+pub(crate) struct Partial {
+    pub(crate) row: usize,
+    pub(crate) col: usize,
+    pub(crate) value: ExprId,
+}
+
+/// Differentiates the model's equations.
+pub(crate) fn differentiate_equations(graph: &mut Graph, model: &Model) -> Equations {
+    let n = model.coordinates.len();
+    let mut calculus = Calculus { graph, simplifier: Simplifier::default() };
+    let lagrangian = calculus.simplified(model.lagrangian);
+    let force: Vec<ExprId> =
+        (0..n).map(|i| calculus.partial_or_zero(lagrangian, Symbol::Coordinate(i))).collect();
+    let momentum: Vec<ExprId> =
+        (0..n).map(|i| calculus.partial_or_zero(lagrangian, Symbol::Velocity(i))).collect();
+    let constraints: Vec<ExprId> =
+        model.constraints.iter().map(|(_, residual)| calculus.simplified(*residual)).collect();
+    Equations {
+        hessian_qq: calculus.jacobian(&force, n, Symbol::Coordinate, is_lower),
+        hessian_vq: calculus.jacobian(&momentum, n, Symbol::Coordinate, |_, _| true),
+        hessian_vv: calculus.jacobian(&momentum, n, Symbol::Velocity, is_lower),
+        hessian_vt: calculus.jacobian(&momentum, 1, |_| Symbol::Time, |_, _| true),
+        jacobian_q: calculus.jacobian(&constraints, n, Symbol::Coordinate, |_, _| true),
+        jacobian_t: calculus.jacobian(&constraints, 1, |_| Symbol::Time, |_, _| true),
+        curvature: constraints.iter().map(|&residual| calculus.second_rate(residual)).collect(),
+        lagrangian,
+        force,
+        momentum,
+        constraints,
+    }
+}
+
+fn is_lower(row: usize, col: usize) -> bool {
+    row >= col
+}
+
+/// Differentiation followed by simplification.
+struct Calculus<'a> {
+    graph: &'a mut Graph,
+    simplifier: Simplifier,
+}
+
+impl Calculus<'_> {
+    fn simplified(&mut self, root: ExprId) -> ExprId {
+        self.simplifier.simplify(self.graph, root)
+    }
+
+    /// `∂ root / ∂ symbol`, or `None` if it vanishes.
+    fn partial(&mut self, root: ExprId, symbol: Symbol) -> Option<ExprId> {
+        let derivative = partial(self.graph, root, symbol)?;
+        let simplified = self.simplified(derivative);
+        (self.graph.as_number(simplified) != Some(0.0)).then_some(simplified)
+    }
+
+    fn partial_or_zero(&mut self, root: ExprId, symbol: Symbol) -> ExprId {
+        self.partial(root, symbol).unwrap_or_else(|| self.graph.number(0.0))
+    }
+
+    /// The nonzero derivatives of `rows` by `n_columns` symbols, at the places where `wanted(row, col)`.
+    fn jacobian(
+        &mut self,
+        rows: &[ExprId],
+        n_columns: usize,
+        column: impl Fn(usize) -> Symbol,
+        wanted: impl Fn(usize, usize) -> bool,
+    ) -> Vec<Partial> {
+        let mut partials = Vec::new();
+        for (row, &root) in rows.iter().enumerate() {
+            for col in (0..n_columns).filter(|&col| wanted(row, col)) {
+                partials.extend(self.partial(root, column(col)).map(|value| Partial { row, col, value }));
+            }
+        }
+        partials
+    }
+
+    /// `d² root / dt²` along a motion without acceleration: `vᵀ φ_qq v + 2 φ_qt v + φ_tt`.
+    fn second_rate(&mut self, root: ExprId) -> ExprId {
+        let second = rate(self.graph, root)
+            .map(|first| self.simplified(first))
+            .and_then(|first| rate(self.graph, first))
+            .map(|second| self.simplified(second));
+        second.unwrap_or_else(|| self.graph.number(0.0))
+    }
+}

@@ -1,0 +1,32 @@
+//! The compiler on one screen: every stage, what it takes and what it hands on.
+
+use proc_macro2::TokenStream;
+
+use crate::diagnostics::Diagnostics;
+use crate::expr::Graph;
+use crate::{emit, mechanics, model, schedule, structure, syntax};
+
+/// Expands the tokens of a struct into its implementation, or into the errors in them.
+pub(crate) fn expand(input: TokenStream) -> TokenStream {
+    let mut diagnostics = Diagnostics::default();
+    // Tokens → items: syntax only, names unresolved.
+    let declaration = match syntax::parse(input, &mut diagnostics) {
+        Ok(declaration) => declaration,
+        Err(syntax::NotAnItem) => return emit::compile_errors(&diagnostics),
+    };
+    // Items → graph: names resolved, L and φ as expressions.
+    let mut graph = Graph::default();
+    let model = model::resolve(&declaration, &mut graph, &mut diagnostics);
+    let Some(model) = model.filter(|_| diagnostics.is_empty()) else {
+        return emit::fallback(&declaration, &diagnostics);
+    };
+    // L and φ → the derivatives that the integrators need, each simplified.
+    let equations = mechanics::differentiate_equations(&mut graph, &model);
+    // Derivatives → what is zero, constant, varying.
+    let structure = structure::analyze(&graph, &equations);
+    // Graph → straight-line programs with named intermediate values in bounded scopes.
+    let programs = schedule::schedule(&graph, &equations, structure);
+    graph.verify();
+    // Programs → Rust.
+    emit::implementation(&declaration, &model, &graph, &programs)
+}

@@ -1,0 +1,101 @@
+//! From the graph to straight-line programs.
+//!
+//! In: the roots of every kernel. Out: one [`Program`] per kernel: which shared nodes get a name, in which order they
+//! are computed, and in which bounded scope. What depends on parameters alone is moved to the program `constants`.
+
+mod program;
+
+pub(crate) use program::{Operations, Place, Program, Statement};
+
+use std::collections::HashMap;
+
+use crate::expr::{ExprId, Graph, Node, Symbol};
+use crate::mechanics::Equations;
+use crate::structure::Structure;
+
+/// Every kernel of a system, with the structure it belongs to.
+pub(crate) struct Programs {
+    pub(crate) structure: Structure,
+    /// Nodes that depend on parameters alone, by slot; the matrices' constant entries first.
+    pub(crate) slots: ConstantSlots,
+    pub(crate) constants: Program,
+    pub(crate) lagrangian: Program,
+    pub(crate) lagrangian_gradient: Program,
+    pub(crate) lagrangian_derivatives: Program,
+    pub(crate) constraints: Program,
+    pub(crate) constraint_derivatives: Program,
+    pub(crate) constraint_curvature: Program,
+}
+
+/// The values that are computed once from the parameters.
+#[derive(Default)]
+pub(crate) struct ConstantSlots {
+    nodes: Vec<ExprId>,
+    slots: HashMap<ExprId, usize>,
+}
+
+impl ConstantSlots {
+    fn new(nodes: &[ExprId]) -> Self {
+        let slots = nodes.iter().enumerate().map(|(slot, &node)| (node, slot)).collect();
+        Self { nodes: nodes.to_vec(), slots }
+    }
+
+    /// Number of slots.
+    pub(crate) fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// The slot of a node, if it has one.
+    pub(crate) fn get(&self, node: ExprId) -> Option<usize> {
+        self.slots.get(&node).copied()
+    }
+
+    /// Gives a slot to every constant below the roots that a varying node uses, or that is a root.
+    fn add_constants_of(&mut self, graph: &Graph, roots: &[ExprId]) {
+        for id in graph.reachable(roots, |id| graph.is_constant(id)) {
+            if graph.is_constant(id) && graph.as_number(id).is_none() && !self.slots.contains_key(&id) {
+                self.slots.insert(id, self.nodes.len());
+                self.nodes.push(id);
+            }
+        }
+    }
+}
+
+/// Schedules every kernel.
+pub(crate) fn schedule(graph: &Graph, equations: &Equations, structure: Structure) -> Programs {
+    let lagrangian = vec![equations.lagrangian];
+    let gradient: Vec<ExprId> = equations.force.iter().chain(&equations.momentum).copied().collect();
+    let derivatives: Vec<ExprId> = gradient.iter().chain(&structure.hessian_entries).copied().collect();
+    let constraints = equations.constraints.clone();
+    let constraint_derivatives: Vec<ExprId> =
+        constraints.iter().chain(&structure.jacobian_entries).copied().collect();
+    let curvature = equations.curvature.clone();
+
+    let mut slots = ConstantSlots::new(&structure.constant_entries);
+    for roots in [&lagrangian, &derivatives, &constraint_derivatives, &curvature] {
+        slots.add_constants_of(graph, roots);
+    }
+    // Outside `constants`, whatever depends on parameters alone is read, not computed.
+    let kernel =
+        |roots: Vec<ExprId>| Program::new(graph, roots, |id| graph.is_constant(id) || is_symbol(graph, id));
+    Programs {
+        constants: Program::new(graph, slots.nodes.clone(), |id| is_symbol(graph, id)),
+        lagrangian: kernel(lagrangian),
+        lagrangian_gradient: kernel(gradient),
+        lagrangian_derivatives: kernel(derivatives),
+        constraints: kernel(constraints),
+        constraint_derivatives: kernel(constraint_derivatives),
+        constraint_curvature: kernel(curvature),
+        structure,
+        slots,
+    }
+}
+
+fn is_symbol(graph: &Graph, id: ExprId) -> bool {
+    match graph.node(id) {
+        // A named constant is converted to the scalar type: worth a name where it is used twice.
+        Node::Symbol(Symbol::NamedConstant(_)) => false,
+        Node::Symbol(_) | Node::Number(_) => true,
+        Node::Unary(..) | Node::Binary(..) | Node::Power(..) => false,
+    }
+}

@@ -1,0 +1,98 @@
+//! What is zero, constant, or varying in the derivatives.
+//!
+//! In: [`Equations`]. Out: for every nonzero second derivative of `L` and first derivative of `φ` its place, and whether
+//! its value is computed once from the parameters or by a kernel.
+
+use crate::expr::{Dependence, ExprId, Graph};
+use crate::mechanics::{Equations, Partial};
+
+/// The sparsity of a system.
+pub(crate) struct Structure {
+    pub(crate) hessian_qq: Vec<Entry>,
+    pub(crate) hessian_vq: Vec<Entry>,
+    pub(crate) hessian_vv: Vec<Entry>,
+    pub(crate) hessian_vt: Vec<Entry>,
+    pub(crate) jacobian_q: Vec<Entry>,
+    pub(crate) jacobian_t: Vec<Entry>,
+    /// Entries of matrices that depend on parameters alone; an entry's slot is its index here.
+    pub(crate) constant_entries: Vec<ExprId>,
+    /// Varying entries of the Hessian, in the order of the kernel's output.
+    pub(crate) hessian_entries: Vec<ExprId>,
+    /// Varying entries of the Jacobian, in the order of the kernel's output.
+    pub(crate) jacobian_entries: Vec<ExprId>,
+    /// What `∂²L/∂v²` depends on.
+    pub(crate) mass: Dependence,
+    /// What `L` depends on.
+    pub(crate) lagrangian: Dependence,
+    /// What `φ` depends on.
+    pub(crate) constraints: Dependence,
+}
+
+/// A nonzero entry of a matrix.
+#[derive(Clone, Copy)]
+pub(crate) struct Entry {
+    pub(crate) row: usize,
+    pub(crate) col: usize,
+    pub(crate) value: EntryValue,
+}
+
+/// Where an entry's value comes from.
+#[derive(Clone, Copy)]
+pub(crate) enum EntryValue {
+    Constant(usize),
+    Varying(usize),
+}
+
+/// Classifies every derivative.
+pub(crate) fn analyze(graph: &Graph, equations: &Equations) -> Structure {
+    let mut constant_entries = Vec::new();
+    let (mut hessian_entries, mut jacobian_entries) = (Vec::new(), Vec::new());
+    let mut hessian = |partials| classify(graph, partials, &mut constant_entries, &mut hessian_entries);
+    let (hessian_qq, hessian_vq) = (hessian(&equations.hessian_qq), hessian(&equations.hessian_vq));
+    let (hessian_vv, hessian_vt) = (hessian(&equations.hessian_vv), hessian(&equations.hessian_vt));
+    let mut jacobian = |partials| classify(graph, partials, &mut constant_entries, &mut jacobian_entries);
+    let (jacobian_q, jacobian_t) = (jacobian(&equations.jacobian_q), jacobian(&equations.jacobian_t));
+    Structure {
+        hessian_qq,
+        hessian_vq,
+        hessian_vv,
+        hessian_vt,
+        jacobian_q,
+        jacobian_t,
+        constant_entries,
+        hessian_entries,
+        jacobian_entries,
+        mass: union(graph, equations.hessian_vv.iter().map(|partial| partial.value)),
+        lagrangian: graph.dependence(equations.lagrangian),
+        constraints: union(graph, equations.constraints.iter().copied()),
+    }
+}
+
+fn union(graph: &Graph, roots: impl Iterator<Item = ExprId>) -> Dependence {
+    roots.fold(Dependence::default(), |union, root| union.union(graph.dependence(root)))
+}
+
+fn classify(
+    graph: &Graph,
+    partials: &[Partial],
+    constants: &mut Vec<ExprId>,
+    varying: &mut Vec<ExprId>,
+) -> Vec<Entry> {
+    let place = |&Partial { row, col, value }: &Partial| {
+        let value = if graph.is_constant(value) {
+            EntryValue::Constant(index_of(constants, value))
+        } else {
+            EntryValue::Varying(index_of(varying, value))
+        };
+        Entry { row, col, value }
+    };
+    partials.iter().map(place).collect()
+}
+
+/// The index of `value`, which is appended if it is new: equal entries are computed and stored once.
+fn index_of(values: &mut Vec<ExprId>, value: ExprId) -> usize {
+    values.iter().position(|&known| known == value).unwrap_or_else(|| {
+        values.push(value);
+        values.len() - 1
+    })
+}

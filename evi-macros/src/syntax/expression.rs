@@ -1,0 +1,343 @@
+//! The expression language: from a Rust expression to a node of the graph.
+
+use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
+use syn::spanned::Spanned;
+
+use crate::diagnostics::{Diagnostics, suggestion};
+use crate::expr::{Binary, ExprId, Graph, Unary};
+
+/// An expression as the user wrote it.
+#[derive(Clone)]
+pub(crate) struct Expression {
+    syntax: syn::Expr,
+    /// Its tokens, for the copy that rustc evaluates.
+    pub(crate) tokens: TokenStream,
+}
+
+/// What names mean; knows the scope that an expression stands in.
+pub(crate) trait Resolver {
+    /// The node of a name, or `None` for a name that is unknown.
+    fn name(&mut self, graph: &mut Graph, name: &Ident, diagnostics: &mut Diagnostics) -> Resolved;
+    /// The node of `der(name)`; reports what is wrong with it.
+    fn velocity(
+        &mut self,
+        graph: &mut Graph,
+        der: Span,
+        name: &Ident,
+        diagnostics: &mut Diagnostics,
+    ) -> Option<ExprId>;
+    /// The node of a constant that rustc resolves.
+    fn constant(&mut self, graph: &mut Graph, path: TokenStream) -> ExprId;
+    /// Gives a name to the value of a `let` in a block, until the block ends.
+    fn define(&mut self, name: &Ident, value: Option<ExprId>);
+    /// Opens a block.
+    fn enter_block(&mut self);
+    /// Closes the innermost block.
+    fn leave_block(&mut self);
+    /// Reports a name without meaning.
+    fn report_unknown(&self, name: &Ident, diagnostics: &mut Diagnostics);
+}
+
+/// What a name stands for.
+pub(crate) enum Resolved {
+    Value(ExprId),
+    /// Known, but its definition or its use here is wrong and has been reported.
+    Mistaken,
+    Unknown,
+}
+
+impl Expression {
+    /// Parses the tokens behind the token at `before`.
+    pub(crate) fn parse(tokens: TokenStream, before: Span, diagnostics: &mut Diagnostics) -> Option<Self> {
+        let last = tokens.clone().into_iter().last().map_or(before, |token| token.span());
+        // In parentheses that lie on the last token, an expression that breaks off is reported there.
+        let mut group = Group::new(Delimiter::Parenthesis, tokens.clone());
+        group.set_span(last);
+        match syn::parse2::<syn::Expr>(TokenTree::Group(group).into()) {
+            Ok(syn::Expr::Paren(parenthesized)) => Some(Self { syntax: *parenthesized.expr, tokens }),
+            Ok(_) => {
+                diagnostics.report(last, "expected one expression");
+                None
+            }
+            Err(error) => {
+                diagnostics.report(error.span(), error.to_string());
+                None
+            }
+        }
+    }
+}
+
+/// Builds the node of an expression; `None` where mistakes were reported.
+pub(crate) fn lower(
+    expression: &Expression,
+    graph: &mut Graph,
+    resolver: &mut impl Resolver,
+    diagnostics: &mut Diagnostics,
+) -> Option<ExprId> {
+    Lowering { graph, resolver, diagnostics }.value(&expression.syntax)
+}
+
+struct Lowering<'a, R> {
+    graph: &'a mut Graph,
+    resolver: &'a mut R,
+    diagnostics: &'a mut Diagnostics,
+}
+
+impl<R: Resolver> Lowering<'_, R> {
+    fn value(&mut self, expression: &syn::Expr) -> Option<ExprId> {
+        match expression {
+            syn::Expr::Lit(literal) => self.literal(&literal.lit),
+            syn::Expr::Path(path) if path.qself.is_none() => self.path(path),
+            syn::Expr::Paren(inner) => self.value(&inner.expr),
+            syn::Expr::Group(inner) => self.value(&inner.expr),
+            syn::Expr::Unary(unary) => self.unary(unary),
+            syn::Expr::Binary(binary) => self.binary(binary),
+            syn::Expr::MethodCall(call) => self.method(call),
+            syn::Expr::Call(call) => self.call(call),
+            syn::Expr::Block(block) if block.label.is_none() => self.block(&block.block),
+            syn::Expr::Field(field) => self.mistake(
+                field.span(),
+                "fields of the struct are named directly, without `self.`",
+            ),
+            syn::Expr::Array(array) => {
+                self.mistake(array.span(), "a vector stands where a number is expected: coordinates are scalars")
+            }
+            syn::Expr::Index(index) => {
+                self.mistake(index.span(), "nothing here has an index: coordinates are scalars")
+            }
+            syn::Expr::Cast(cast) => {
+                self.mistake(cast.as_token.span, "no cast is needed: every value is a real number")
+            }
+            other => self.mistake(
+                other.span(),
+                "an equation is made of numbers, names, `der(..)`, `+ - * /`, methods such as `.sin()`, and blocks \
+                 with `let`",
+            ),
+        }
+    }
+
+    fn mistake(&mut self, span: Span, message: impl Into<String>) -> Option<ExprId> {
+        self.diagnostics.report(span, message);
+        None
+    }
+
+    fn literal(&mut self, literal: &syn::Lit) -> Option<ExprId> {
+        let (digits, suffix) = match literal {
+            syn::Lit::Float(float) => (float.base10_digits().to_owned(), float.suffix().to_owned()),
+            syn::Lit::Int(integer) => (integer.base10_digits().to_owned(), integer.suffix().to_owned()),
+            other => return self.mistake(other.span(), "expected a number"),
+        };
+        if !matches!(suffix.as_str(), "" | "f64") {
+            return self
+                .mistake(literal.span(), format!("every value is a real number: leave out `{suffix}`"));
+        }
+        match digits.parse::<f64>() {
+            Ok(value) if value.is_finite() => Some(self.graph.number(value)),
+            _ => self.mistake(literal.span(), "this number is too large for f64"),
+        }
+    }
+
+    fn path(&mut self, path: &syn::ExprPath) -> Option<ExprId> {
+        let Some(name) = path.path.get_ident() else {
+            return Some(self.resolver.constant(self.graph, quote::ToTokens::to_token_stream(path)));
+        };
+        match self.resolver.name(self.graph, name, self.diagnostics) {
+            Resolved::Value(value) => Some(value),
+            Resolved::Mistaken => None,
+            Resolved::Unknown if is_screaming_case(name) => {
+                Some(self.resolver.constant(self.graph, quote::ToTokens::to_token_stream(path)))
+            }
+            Resolved::Unknown => {
+                self.resolver.report_unknown(name, self.diagnostics);
+                None
+            }
+        }
+    }
+
+    fn unary(&mut self, unary: &syn::ExprUnary) -> Option<ExprId> {
+        match unary.op {
+            syn::UnOp::Neg(_) => self.value(&unary.expr).map(|operand| self.graph.neg(operand)),
+            // `x ** 2` parses as `x * (*2)`.
+            syn::UnOp::Deref(star) => {
+                self.mistake(star.span(), "`**` is not a power in Rust, write `.powi(2)`")
+            }
+            _ => self.mistake(unary.op.span(), "this operator has no meaning for real numbers"),
+        }
+    }
+
+    fn binary(&mut self, binary: &syn::ExprBinary) -> Option<ExprId> {
+        // Both operands first, so that the mistakes of both are reported.
+        let (first, second) = (self.value(&binary.left), self.value(&binary.right));
+        let operator = match binary.op {
+            syn::BinOp::Add(_) => Binary::Add,
+            syn::BinOp::Sub(_) => Binary::Sub,
+            syn::BinOp::Mul(_) => Binary::Mul,
+            syn::BinOp::Div(slash) if is_integer(&binary.left) && is_integer(&binary.right) => {
+                return self.mistake(slash.span(), integer_division_message(&binary.left, &binary.right));
+            }
+            syn::BinOp::Div(_) => Binary::Div,
+            syn::BinOp::BitXor(caret) => {
+                return self.mistake(caret.span(), "`^` is not a power in Rust, write `.powi(2)`");
+            }
+            other => {
+                return self
+                    .mistake(other.span(), "this operator has no meaning in an equation: use `+ - * /`");
+            }
+        };
+        Some(self.graph.binary(operator, first?, second?))
+    }
+
+    fn method(&mut self, call: &syn::ExprMethodCall) -> Option<ExprId> {
+        let receiver = self.value(&call.receiver);
+        let method = call.method.to_string();
+        let arguments: Vec<&syn::Expr> = call.args.iter().collect();
+        match (method.as_str(), arguments.as_slice()) {
+            ("powi", [exponent]) => match integer_literal(exponent) {
+                Some(exponent) => receiver.map(|base| self.graph.power(base, exponent)),
+                None => self.mistake(
+                    exponent.span(),
+                    "`.powi` takes an integer literal; for other exponents write `.powf(..)`",
+                ),
+            },
+            ("powf", [exponent]) => {
+                let exponent = self.value(exponent);
+                Some(self.graph.binary(Binary::Powf, receiver?, exponent?))
+            }
+            ("atan2", [x]) => {
+                let x = self.value(x);
+                Some(self.graph.binary(Binary::Atan2, receiver?, x?))
+            }
+            ("powi" | "powf" | "atan2", _) => {
+                self.mistake(call.method.span(), format!("`.{method}` takes one argument"))
+            }
+            (_, arguments) => match (Unary::from_method(&method), arguments) {
+                (Some(function), []) => receiver.map(|operand| self.graph.unary(function, operand)),
+                (Some(_), [extra, ..]) => {
+                    self.mistake(extra.span(), format!("`.{method}()` takes no argument"))
+                }
+                (None, _) => {
+                    let known = || Unary::methods().chain(["powi", "powf", "atan2"]);
+                    let list: Vec<&str> = known().collect();
+                    let similar = suggestion(&method, known());
+                    let message =
+                        format!("unknown function `{method}`{similar}\nfunctions: {}", list.join(", "));
+                    self.mistake(call.method.span(), message)
+                }
+            },
+        }
+    }
+
+    fn call(&mut self, call: &syn::ExprCall) -> Option<ExprId> {
+        let function = match &*call.func {
+            syn::Expr::Path(path) => path.path.get_ident().cloned(),
+            _ => None,
+        };
+        let arguments: Vec<&syn::Expr> = call.args.iter().collect();
+        match (function, arguments.as_slice()) {
+            (Some(der), [argument]) if der == "der" => self.derivative(der.span(), argument),
+            (Some(der), _) if der == "der" => {
+                self.mistake(der.span(), "`der` takes one coordinate: `der(x)`")
+            }
+            (Some(name), [_, ..]) if Unary::from_method(&name.to_string()).is_some() => {
+                let message = format!("functions are methods in Rust: write `(..).{name}()`");
+                self.mistake(name.span(), message)
+            }
+            _ => self
+                .mistake(call.func.span(), "the only function that can be called here is `der(coordinate)`"),
+        }
+    }
+
+    fn derivative(&mut self, der: Span, argument: &syn::Expr) -> Option<ExprId> {
+        match argument {
+            syn::Expr::Path(path) if path.path.get_ident().is_some() => {
+                let name = path.path.get_ident().expect("checked by the guard");
+                self.resolver.velocity(self.graph, der, name, self.diagnostics)
+            }
+            syn::Expr::Paren(inner) => self.derivative(der, &inner.expr),
+            syn::Expr::Call(_) => {
+                self.mistake(der, "a Lagrangian depends on positions and velocities: no second derivatives")
+            }
+            other => self.mistake(other.span(), "`der` takes a coordinate by its name: `der(x)`"),
+        }
+    }
+
+    fn block(&mut self, block: &syn::Block) -> Option<ExprId> {
+        self.resolver.enter_block();
+        let mut value = None;
+        for (k, statement) in block.stmts.iter().enumerate() {
+            match statement {
+                syn::Stmt::Local(local) => self.local(local),
+                syn::Stmt::Expr(last, None) if k + 1 == block.stmts.len() => value = self.value(last),
+                other => {
+                    self.mistake(
+                        other.span(),
+                        "a block holds `let name = expression;` and ends with an expression",
+                    );
+                }
+            }
+        }
+        if !matches!(block.stmts.last(), Some(syn::Stmt::Expr(_, None))) {
+            self.mistake(block.brace_token.span.close(), "a block ends with an expression, its value");
+        }
+        self.resolver.leave_block();
+        value
+    }
+
+    fn local(&mut self, local: &syn::Local) {
+        let name = match &local.pat {
+            syn::Pat::Ident(name)
+                if name.by_ref.is_none() && name.mutability.is_none() && name.subpat.is_none() =>
+            {
+                name.ident.clone()
+            }
+            other => {
+                self.mistake(other.span(), "write `let name = expression;`");
+                return;
+            }
+        };
+        let value = match &local.init {
+            Some(init) if init.diverge.is_none() => self.value(&init.expr),
+            _ => self.mistake(name.span(), "write `let name = expression;`"),
+        };
+        self.resolver.define(&name, value);
+    }
+}
+
+/// Rust's convention for constants.
+fn is_screaming_case(name: &Ident) -> bool {
+    let name = name.to_string();
+    name.chars().any(char::is_alphabetic) && !name.chars().any(char::is_lowercase)
+}
+
+fn integer_literal(expression: &syn::Expr) -> Option<i32> {
+    match expression {
+        syn::Expr::Lit(syn::ExprLit { lit: syn::Lit::Int(integer), .. }) => integer.base10_parse().ok(),
+        syn::Expr::Unary(syn::ExprUnary { op: syn::UnOp::Neg(_), expr, .. }) => {
+            integer_literal(expr).map(|magnitude| -magnitude)
+        }
+        syn::Expr::Paren(inner) => integer_literal(&inner.expr),
+        _ => None,
+    }
+}
+
+/// Whether Rust would compute an expression in integers.
+fn is_integer(expression: &syn::Expr) -> bool {
+    match expression {
+        syn::Expr::Lit(literal) => {
+            matches!(&literal.lit, syn::Lit::Int(integer) if integer.suffix() != "f64")
+        }
+        syn::Expr::Paren(inner) => is_integer(&inner.expr),
+        syn::Expr::Unary(unary) => is_integer(&unary.expr),
+        syn::Expr::Binary(binary) => is_integer(&binary.left) && is_integer(&binary.right),
+        _ => false,
+    }
+}
+
+fn integer_division_message(dividend: &syn::Expr, divisor: &syn::Expr) -> String {
+    match (integer_literal(dividend), integer_literal(divisor)) {
+        (Some(a), Some(b)) if b != 0 => {
+            format!("`{a}/{b}` is {} in Rust, write `{a}.0/{b}.0`", a / b)
+        }
+        _ => "a quotient of integers is an integer in Rust, write `1.0/2.0`".to_owned(),
+    }
+}

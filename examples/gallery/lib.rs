@@ -1,0 +1,28 @@
+//! The gallery: mechanical scenes with their Lagrangians, standard parameters and starts.
+//!
+//! Every scene is one file: the derive, one paragraph of physics, parameters and starts that the tests, examples and
+//! benchmarks share.
+
+pub mod double_pendulum;
+pub mod harmonic_oscillator;
+pub mod pendulum;
+pub mod spherical_pendulum;
+pub mod stiff_spring_pendulum;
+
+pub use double_pendulum::DoublePendulum;
+pub use harmonic_oscillator::HarmonicOscillator;
+pub use pendulum::Pendulum;
+pub use spherical_pendulum::SphericalPendulum;
+pub use stiff_spring_pendulum::StiffSpringPendulum;
+
+/// Standard gravity as in the certified reference solutions, m/s².
+pub const GRAVITY: f64 = 9.81;
+
+/// Where a motion begins.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Start<const N: usize> {
+    /// Positions.
+    pub q: [f64; N],
+    /// Velocities.
+    pub v: [f64; N],
+}

@@ -1,0 +1,38 @@
+//! Stiff spring pendulum: a plane pendulum whose rod is a stiff linear spring, without constraints. The fast radial
+//! oscillation has the frequency `√(k/m)`; energy is conserved. A classical stiff test (e.g. Hairer, Lubich, Wanner,
+//! Geometric Numerical Integration, ch. XIV).
+
+use evi_core::prelude::*;
+
+use crate::{GRAVITY, Start};
+
+/// A point mass on a spring fixed at the origin, y upwards; SI units.
+#[derive(MechanicalSystem, Clone, Copy, Debug)]
+#[evi(
+    coordinates(x, y),
+    let stretch = (x.powi(2) + y.powi(2)).sqrt() - l,
+    kinetic = 0.5 * m * (der(x).powi(2) + der(y).powi(2)),
+    potential = 0.5 * k * stretch.powi(2) + m * g * y,
+)]
+pub struct StiffSpringPendulum {
+    /// Mass.
+    pub m: f64,
+    /// Rest length of the spring.
+    pub l: f64,
+    /// Stiffness of the spring.
+    pub k: f64,
+    /// Gravitational acceleration.
+    pub g: f64,
+}
+
+impl StiffSpringPendulum {
+    /// Unit mass and length with the given stiffness.
+    pub const fn with_stiffness(k: f64) -> Self {
+        Self { m: 1.0, l: 1.0, k, g: GRAVITY }
+    }
+
+    /// Unstretched and horizontal with a downward velocity of 0.5.
+    pub const fn horizontal(&self) -> Start<2> {
+        Start { q: [self.l, 0.0], v: [0.0, -0.5] }
+    }
+}
