@@ -22,3 +22,20 @@ impl<X: Clone, const N: usize> Array<X> for [X; N] {
         core::array::from_fn(element)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Array;
+
+    #[test]
+    fn an_array_knows_its_length_and_is_filled_by_index() {
+        assert_eq!(<[f64; 3] as Array<f64>>::LEN, 3);
+        assert_eq!(<[usize; 3] as Array<usize>>::from_fn(|i| 10 * i), [0, 10, 20]);
+    }
+
+    #[test]
+    fn an_empty_index_set_asks_for_no_element() {
+        let empty = <[f64; 0] as Array<f64>>::from_fn(|i| unreachable!("element {i} of none"));
+        assert_eq!(empty.as_ref(), &[] as &[f64]);
+    }
+}

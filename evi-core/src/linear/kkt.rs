@@ -155,3 +155,133 @@ fn reciprocal_power_of_two(x: f64) -> f64 {
     }
     f64::from_bits((LARGEST_REPRESENTABLE_SHIFT - biased_exponent) << MANTISSA_BITS)
 }
+
+#[cfg(test)]
+mod power_of_two_tests {
+    use super::*;
+
+    #[test]
+    fn the_reciprocal_lies_within_a_factor_of_two_and_is_a_power_of_two() {
+        for exponent in -1021..=1021 {
+            for mantissa in [1.0, 1.3, 2.0 - f64::EPSILON] {
+                let x = mantissa * Scalar::powi(2.0_f64, exponent);
+                let reciprocal = reciprocal_power_of_two(x);
+                assert_eq!(reciprocal, Scalar::powi(2.0_f64, -exponent), "{x:e}");
+                assert!((1.0..2.0).contains(&(x * reciprocal)), "{x:e}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_has_no_reciprocal_is_left_unscaled() {
+        let subnormal = f64::MIN_POSITIVE / 2.0;
+        for x in [0.0, -0.0, subnormal, f64::INFINITY, f64::NEG_INFINITY, f64::NAN, f64::MAX] {
+            assert_eq!(reciprocal_power_of_two(x), 1.0, "{x:e}");
+        }
+    }
+
+    #[test]
+    fn the_sign_does_not_matter() {
+        assert_eq!(reciprocal_power_of_two(-3.0), 0.5);
+    }
+}
+
+#[cfg(all(test, feature = "derive"))]
+mod tests {
+    use super::*;
+    use crate::mechanics::Mechanics;
+
+    #[derive(evi_macros::MechanicalSystem)]
+    #[evi(
+        coordinates(x1, y1, x2, y2),
+        kinetic   = 0.5 * m1 * (der(x1).powi(2) + der(y1).powi(2))
+                  + 0.5 * m2 * (der(x2).powi(2) + der(y2).powi(2)),
+        potential = 0.0 * y1,
+        constraint(rod1: unit * (x1.powi(2) + y1.powi(2)) == unit),
+        constraint(rod2: (x2 - x1).powi(2) + (y2 - y1).powi(2) == 1.0),
+    )]
+    struct Chain {
+        m1: f64,
+        m2: f64,
+        unit: f64,
+    }
+
+    const CONFIGURATION: [f64; 4] = [0.6, 0.8, 1.5, -0.1];
+
+    fn kkt(system: &Chain) -> Kkt<Chain> {
+        let mechanics = Mechanics::new(system);
+        let (_, hessian) = Chain::lagrangian_derivatives(&mechanics.constants, 0.0, &CONFIGURATION, &[0.0; 4]);
+        let (_, jacobian) = Chain::constraint_derivatives(&mechanics.constants, 0.0, &CONFIGURATION);
+        mechanics.mass_kkt(hessian.as_ref(), jacobian.as_ref())
+    }
+
+    /// Solves for a known solution whose entries are alike in the natural units of each unknown.
+    fn check_scaling(m1: f64, m2: f64, unit: f64) {
+        let system = Chain { m1, m2, unit };
+        let matrix = kkt(&system);
+        let scale = matrix.scale();
+        let solution: [f64; 6] = core::array::from_fn(|i| scale[i] * [1.0, -2.0, 3.0, 1.5, -1.0, 2.5][i]);
+        let mut unknowns: [f64; 6] =
+            core::array::from_fn(|row| (0..6).map(|col| matrix.rows[row][col] * solution[col]).sum());
+        let factors = matrix.factor().expect("regular for every pair of masses");
+        assert!(factors.pivot_ratio() > 1e-2, "{:e}", factors.pivot_ratio());
+        factors.solve(&mut unknowns);
+        for i in 0..6 {
+            let error = ((unknowns[i] - solution[i]) / scale[i]).abs();
+            // Sums of up to four terms in the right-hand side, and the elimination of a matrix of condition 1e1.
+            assert!(error <= 100.0 * f64::EPSILON, "masses {m1:e}, {m2:e}: unknown {i} is off by {error:e}");
+        }
+    }
+
+    #[test]
+    fn masses_and_units_twelve_orders_apart_cost_no_accuracy() {
+        for m1 in [1e-12, 1e-6, 1.0, 1e6, 1e12] {
+            for m2 in [1e-12, 1e-6, 1.0, 1e6, 1e12] {
+                for unit in [1e-9, 1.0, 1e9] {
+                    check_scaling(m1, m2, unit);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn without_scaling_the_same_matrix_looks_singular() {
+        let matrix = kkt(&Chain { m1: 1e-12, m2: 1e12, unit: 1.0 });
+        assert!(<Chain as MechanicalSystem>::KktFactors::factor(&matrix.rows).is_err());
+        assert!(matrix.factor().is_ok());
+    }
+
+    #[test]
+    fn units_that_differ_by_powers_of_two_change_no_bit() {
+        let rhs = [0.3, -0.7, 0.1, 0.9, 0.0, 0.0];
+        let solve = |power: i32| {
+            let mass = Scalar::powi(4.0_f64, power);
+            let mut unknowns = rhs.map(|value| value * mass);
+            kkt(&Chain { m1: 1.7 * mass, m2: 0.4 * mass, unit: 1.0 }).factor().unwrap().solve(&mut unknowns);
+            (unknowns[..4].to_vec(), unknowns[4] / mass, unknowns[5] / mass)
+        };
+        assert_eq!(solve(0), solve(20));
+        assert_eq!(solve(0), solve(-20));
+    }
+
+    #[test]
+    fn a_massless_body_on_a_free_joint_is_singular() {
+        assert!(kkt(&Chain { m1: 1.0, m2: 0.0, unit: 1.0 }).factor().is_err());
+    }
+
+    #[test]
+    fn a_length_is_measured_in_the_unit_of_each_coordinate() {
+        let factors = kkt(&Chain { m1: 4.0, m2: 1.0, unit: 1.0 }).factor().unwrap();
+        assert_eq!(factors.scaled_length(&[3.0, 0.0, -5.0, 0.0]), 6.0);
+    }
+
+    #[test]
+    fn a_length_with_an_entry_that_is_not_a_number_is_not_a_number() {
+        let factors = kkt(&Chain { m1: 1.0, m2: 1.0, unit: 1.0 }).factor().unwrap();
+        for i in 0..4 {
+            let mut x = [1.0; 4];
+            x[i] = f64::NAN;
+            assert!(factors.scaled_length(&x).is_nan(), "entry {i}");
+        }
+    }
+}

@@ -7,7 +7,7 @@ mod dense;
 mod kkt;
 
 pub use dense::DenseLu;
-pub(crate) use kkt::{Kkt, constraint_index, unknowns};
+pub(crate) use kkt::{FactoredKkt, Kkt, constraint_index, unknowns};
 
 /// Factors of a square matrix `A`.
 pub trait Factorization<V, M>: Sized {

@@ -2,7 +2,7 @@
 
 use super::Mechanics;
 use crate::array::Array;
-use crate::linear::{SingularMatrix, constraint_index, unknowns};
+use crate::linear::{FactoredKkt, SingularMatrix, constraint_index, unknowns};
 use crate::newton::{self, NotConverged};
 use crate::system::{LagrangianGradient, MechanicalSystem};
 
@@ -63,6 +63,9 @@ impl<S: MechanicalSystem> Mechanics<S> {
             }
             // The impulse enters linearly: its value, not an increment, belongs to the corrected velocity.
             impulse = Array::from_fn(|c| correction[constraint_index::<S>(c)]);
+            if S::N_CONSTRAINTS > 0 {
+                self.refine_hidden_constraints(&kkt, &jacobian, &mut v, &mut impulse);
+            }
             Ok(relative(kkt.scaled_length(correction.as_ref()), kkt.scaled_length(v.as_ref())))
         };
         if S::STRUCTURE.is_quadratic_in_velocity() {
@@ -73,6 +76,28 @@ impl<S: MechanicalSystem> Mechanics<S> {
         let mut constraint_momentum = S::PerCoordinate::<f64>::from_fn(|_| 0.0);
         self.add_constraint_force(jacobian.as_ref(), impulse.as_ref(), constraint_momentum.as_mut());
         Ok(Projected { v, p: Array::from_fn(|i| momentum[i] - constraint_momentum[i]) })
+    }
+
+    /// Solves once more for what the first solve left of `G v + ∂φ/∂t`.
+    ///
+    /// Near a turning point `v` is a small difference of large momenta, whose round-off would stay in `G v`.
+    #[inline]
+    fn refine_hidden_constraints(
+        &self,
+        kkt: &FactoredKkt<S>,
+        jacobian: &S::PerJacobianEntry<f64>,
+        v: &mut S::PerCoordinate<f64>,
+        impulse: &mut S::PerConstraint<f64>,
+    ) {
+        let rate = self.constraint_rate(jacobian.as_ref(), v);
+        let mut refinement = unknowns::<S>(|_| 0.0, |c| -rate[c]);
+        kkt.solve(&mut refinement);
+        for i in 0..S::N_COORDINATES {
+            v[i] += refinement[i];
+        }
+        for c in 0..S::N_CONSTRAINTS {
+            impulse[c] += refinement[constraint_index::<S>(c)];
+        }
     }
 
     /// The configuration on the manifold nearest to `q` in the metric of the mass matrix at `(q, v)`.

@@ -1,0 +1,1 @@
+//! Speed of single steps; see the bench targets.
