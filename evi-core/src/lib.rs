@@ -30,7 +30,7 @@
 //!
 //! # Layers
 //!
-//! [`array`], [`scalar`], [`system`] and [`scheme`] stand at the bottom; above them `newton` and [`linear`], then
+//! [`mod@array`], [`scalar`], [`system`] and [`scheme`] stand at the bottom; above them `newton` and [`linear`], then
 //! [`mechanics`] (energies, projections, the equations of one step), then [`integrator`] (one-step maps and runs),
 //! and beside the integrators [`baseline`], [`generic`], [`comparison`] and [`report`]. Imports point downwards.
 //!

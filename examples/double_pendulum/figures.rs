@@ -194,10 +194,10 @@ fn draw_legend(area: &Canvas<'_>) -> Result<(), Box<dyn Error>> {
 /// Colours of Okabe and Ito, which colour-blind readers can tell apart.
 fn color(method: Method) -> RGBColor {
     match method {
-        Method::Evi { nodes: 1, omega } if omega == 0.0 => RGBColor(0, 114, 178),
+        Method::Evi { nodes: 1, omega: 0.0 } => RGBColor(0, 114, 178),
         Method::Evi { nodes: 1, omega } if omega < 3.0 => RGBColor(86, 180, 233),
         Method::Evi { nodes: 1, .. } => RGBColor(0, 158, 115),
-        Method::Evi { omega, .. } if omega == 0.0 => RGBColor(230, 159, 0),
+        Method::Evi { omega: 0.0, .. } => RGBColor(230, 159, 0),
         Method::Evi { omega, .. } if omega < 3.0 => RGBColor(204, 121, 167),
         Method::Evi { .. } => RGBColor(150, 100, 40),
         Method::Rattle => RGBColor(90, 90, 90),

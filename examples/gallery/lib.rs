@@ -26,3 +26,8 @@ pub struct Start<const N: usize> {
     /// Velocities.
     pub v: [f64; N],
 }
+
+/// Compiles the example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+struct Readme;

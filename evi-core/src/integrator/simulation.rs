@@ -185,8 +185,9 @@ fn check_position<S: MechanicalSystem>(
         allowed[entry.row] += CONSISTENCY * (slope * q[entry.col]).abs();
     }
     for c in 0..S::N_CONSTRAINTS {
-        // Written so that a NaN fails.
-        if !(residual[c].abs() <= allowed[c]) {
+        // Compared this way round, so that a NaN fails.
+        let passes = residual[c].abs() <= allowed[c];
+        if !passes {
             let (constraint, residual, allowed) = (S::CONSTRAINTS[c], residual[c], allowed[c]);
             return Err(StartError::InconsistentPosition { constraint, residual, allowed });
         }
@@ -202,7 +203,8 @@ fn check_velocity<S: MechanicalSystem>(
 ) -> Result<(), StartError> {
     let residual = mechanics.hidden_constraint_residual_at(t, q, v);
     for c in 0..S::N_CONSTRAINTS {
-        if !(residual[c] <= CONSISTENCY) {
+        let passes = residual[c] <= CONSISTENCY;
+        if !passes {
             let (constraint, residual, allowed) = (S::CONSTRAINTS[c], residual[c], CONSISTENCY);
             return Err(StartError::InconsistentVelocity { constraint, residual, allowed });
         }

@@ -1,7 +1,7 @@
 //! Mechanics of a scene in continuous and discrete time, without a step size policy or an iteration of steps.
 //!
 //! In: a scene's kernels and their constants. Out: energies, momenta, projections, accelerations with multipliers
-//! ([`Mechanics`]), and the equations of one step ([`DiscreteLagrangian`]).
+//! ([`Mechanics`]), and the equations of one step (`DiscreteLagrangian`).
 
 mod momentum;
 mod observables;
