@@ -1,1 +1,164 @@
-//! Placeholder.
+//! No allocation under a step, whatever the scheme and the scene, and none under a step that fails.
+//!
+//! The allocator of this program counts; the counter is one per thread, so that tests run side by side.
+
+// A global allocator is an unsafe trait: the only way to observe allocations from inside a program. The
+// functions below count and hand over to the system's allocator, whose contract is the one that they are
+// asked to keep.
+#![allow(unsafe_code)]
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+use std::hint::black_box;
+
+use evi_core::baseline::{Rattle, Rk4};
+use evi_core::prelude::*;
+use evi_examples::{
+    DoublePendulum, HarmonicOscillator, Pendulum, SphericalPendulum, Start, StiffSpringPendulum,
+};
+
+thread_local! {
+    // Constant and without destructor: its first use allocates nothing.
+    static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
+}
+
+struct Counting;
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+// SAFETY: every request is passed on unchanged; counting touches no memory of the caller.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        count();
+        // SAFETY: the caller keeps the contract of `alloc`.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: the caller keeps the contract of `dealloc`, and `System` allocated the block.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+
+    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, new_size: usize) -> *mut u8 {
+        count();
+        // SAFETY: the caller keeps the contract of `realloc`, and `System` allocated the block.
+        unsafe { System.realloc(pointer, layout, new_size) }
+    }
+}
+
+fn count() {
+    ALLOCATIONS.with(|allocations| allocations.set(allocations.get() + 1));
+}
+
+/// Allocations of this thread under `work`.
+fn allocations(work: impl FnOnce()) -> u64 {
+    let before = ALLOCATIONS.with(Cell::get);
+    work();
+    ALLOCATIONS.with(Cell::get) - before
+}
+
+/// Takes 1,000 steps and expects that none allocates.
+#[track_caller]
+fn check<S, F, const N: usize>(system: S, scheme: F, start: Start<N>)
+where
+    S: MechanicalSystem<PerCoordinate<f64> = [f64; N]>,
+    F: Scheme<S>,
+{
+    let mut run = Simulation::new(system, scheme).start(start.q, start.v).expect("the start is consistent");
+    let before = run.state().clone();
+    let allocations = allocations(|| {
+        for _ in 0..1_000 {
+            run.advance().expect("the step exists");
+        }
+    });
+    assert_eq!(allocations, 0);
+    assert_ne!(*run.state(), before, "the run stood still");
+}
+
+const PENDULUM: Pendulum = Pendulum { m: 1.0, l: 1.0, g: 9.81 };
+const SWING: Start<1> = Start { q: [1.0], v: [0.0] };
+const OSCILLATOR: HarmonicOscillator = HarmonicOscillator { m: 2.0, k: 3.0 };
+const SPRING: StiffSpringPendulum = StiffSpringPendulum::with_stiffness(1e3);
+const DOUBLE: DoublePendulum = DoublePendulum::UNIT;
+const SPHERICAL: SphericalPendulum = SphericalPendulum::UNIT;
+const OMEGA: f64 = 2.4;
+
+fn mild() -> Start<4> {
+    DOUBLE.at_angles(0.3, -0.2)
+}
+
+/// One frequency per body of the double pendulum.
+const PER_BODY: [Frequency; 4] =
+    [Frequency::ZERO, Frequency::ZERO, Frequency::Trigonometric(2.4), Frequency::Trigonometric(2.4)];
+
+#[test]
+fn the_counter_counts() {
+    assert_eq!(allocations(|| ()), 0);
+    assert_eq!(allocations(|| drop(black_box(Box::new(1.0)))), 1);
+    let growth = |values: &mut Vec<f64>| values.extend(black_box([0.0; 100]));
+    let mut values = Vec::with_capacity(1);
+    assert_eq!(allocations(|| growth(&mut values)), 1);
+    // What keeps every state asks for memory; the counter sees it through the library too.
+    let mut run = Simulation::new(PENDULUM, Evi::midpoint(0.01)).start(SWING.q, SWING.v).unwrap();
+    assert!(allocations(|| drop(run.integrate(0.1))) > 0);
+}
+
+#[test]
+fn no_step_of_an_unconstrained_scene_allocates() {
+    check(PENDULUM, Evi::midpoint(0.01), SWING);
+    check(PENDULUM, Evi::simpson(0.01), SWING);
+    check(PENDULUM, Evi::midpoint(0.01).frequency(3.1), SWING);
+    check(PENDULUM, Evi::simpson(0.01).frequencies([Frequency::Hyperbolic(3.1)]), SWING);
+    check(OSCILLATOR, Evi::midpoint(0.01).frequency(OSCILLATOR.frequency()), SWING);
+    check(SPRING, Evi::midpoint(0.01), SPRING.horizontal());
+    check(SPRING, Evi::new(Quadrature::<5>::gauss(), 0.01).frequency(30.0), SPRING.horizontal());
+}
+
+#[test]
+fn no_step_of_a_constrained_scene_allocates() {
+    check(DOUBLE, Evi::midpoint(0.01), mild());
+    check(DOUBLE, Evi::simpson(0.01), mild());
+    check(DOUBLE, Evi::new(Quadrature::<2>::uniform(), 0.01), mild());
+    check(DOUBLE, Evi::new(Quadrature::<7>::lobatto(), 0.01), mild());
+    check(SPHERICAL, Evi::midpoint(0.01), SPHERICAL.one_radian());
+    check(SPHERICAL, Evi::simpson(0.01), SPHERICAL.one_radian());
+}
+
+#[test]
+fn no_exponential_step_of_a_constrained_scene_allocates() {
+    check(DOUBLE, Evi::midpoint(0.01).frequency(OMEGA), mild());
+    check(DOUBLE, Evi::simpson(0.01).frequency(OMEGA), mild());
+    check(DOUBLE, Evi::simpson(0.01).frequencies(PER_BODY), mild());
+    check(SPHERICAL, Evi::midpoint(0.01).frequency(OMEGA), SPHERICAL.one_radian());
+    check(SPHERICAL, Evi::simpson(0.01).frequency(Frequency::Hyperbolic(OMEGA)), SPHERICAL.one_radian());
+}
+
+#[test]
+fn no_step_of_a_baseline_allocates() {
+    check(DOUBLE, Rattle::new(0.01), mild());
+    check(SPHERICAL, Rattle::new(0.01), SPHERICAL.one_radian());
+    check(OSCILLATOR, Rattle::new(0.01), SWING);
+    check(DOUBLE, Rk4::new(0.01), mild());
+    check(SPHERICAL, Rk4::new(0.01), SPHERICAL.one_radian());
+    check(SPRING, Rk4::new(0.01), SPRING.horizontal());
+}
+
+#[test]
+fn going_to_a_time_does_not_allocate() {
+    let mut run = Simulation::new(DOUBLE, Evi::midpoint(0.01)).start(mild().q, mild().v).unwrap();
+    assert_eq!(allocations(|| assert!(run.advance_to(10.0).is_ok())), 0);
+    assert_eq!(run.steps(), 1_000);
+}
+
+#[test]
+fn a_step_that_fails_does_not_allocate() {
+    // At this step size and frequency the step equations lose their solution after 2.1 units of time.
+    let scheme = Evi::simpson(0.1).frequency(9.81_f64.sqrt());
+    let horizontal = DOUBLE.horizontal();
+    let mut run = Simulation::new(DOUBLE, scheme).start(horizontal.q, horizontal.v).unwrap();
+    let mut failure = None;
+    let allocations = allocations(|| failure = run.advance_to(10.0).err());
+    assert_eq!(allocations, 0);
+    assert!(matches!(failure, Some(StepError::NoSolution { .. })), "{failure:?}");
+}

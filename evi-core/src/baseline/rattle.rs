@@ -2,7 +2,7 @@
 
 use crate::array::Array;
 use crate::integrator::{IterationFailure, OneStep, Scheme, StepError, checked_finite};
-use crate::linear::{Factorization, SingularMatrix};
+use crate::linear::{Factorization, SingularMatrix, largest_magnitude};
 use crate::mechanics::{Mechanics, ProjectionError, State, relative};
 use crate::newton;
 use crate::scheme::{SchemeError, checked_step_size};
@@ -108,20 +108,21 @@ impl<S: MechanicalSystem> RattleStep<S> {
         let mut smallest_pivot_ratio = 1.0_f64;
         let iteration = newton::iterate(|correction| {
             let (mut impulse, jacobian) = S::constraint_derivatives(constants, t, &q);
-            constraint_residual = largest(impulse.as_ref());
+            constraint_residual = largest_magnitude(impulse.as_ref().iter().copied());
             let gram = self
                 .factor_gram(&jacobian, &directions)
                 .map_err(|matrix| IterationFailure::Singular { correction, matrix })?;
             smallest_pivot_ratio = smallest_pivot_ratio.min(gram.pivot_ratio());
             gram.solve(&mut impulse);
-            let mut length = 0.0_f64;
+            let displacement = S::PerCoordinate::<f64>::from_fn(|i| {
+                (0..S::N_CONSTRAINTS).map(|c| directions[c][i] * impulse[c]).sum()
+            });
             for i in 0..S::N_COORDINATES {
-                let displacement: f64 = (0..S::N_CONSTRAINTS).map(|c| directions[c][i] * impulse[c]).sum();
-                v[i] -= displacement / h;
+                v[i] -= displacement[i] / h;
                 q[i] = state.q[i] + h * v[i];
-                length = if displacement.abs() <= length { length } else { displacement.abs() };
             }
-            Ok(relative(length, largest(q.as_ref())))
+            let length = largest_magnitude(displacement.as_ref().iter().copied());
+            Ok(relative(length, largest_magnitude(q.as_ref().iter().copied())))
         });
         match iteration {
             Ok(_) => Ok(q),
@@ -175,8 +176,4 @@ impl<S: MechanicalSystem> RattleStep<S> {
         }
         S::GramFactors::factor(&gram)
     }
-}
-
-fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()))
 }

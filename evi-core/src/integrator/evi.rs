@@ -2,7 +2,7 @@
 
 use super::{IterationFailure, OneStep, Scheme, StepError, checked_finite};
 use crate::array::Array;
-use crate::linear::constraint_index;
+use crate::linear::{constraint_index, largest_magnitude};
 use crate::mechanics::{DiscreteLagrangian, Mechanics, Projected, State, StepStart, relative};
 use crate::newton;
 use crate::scheme::{Frequency, Interpolant, Linear, Quadrature, SchemeError, checked_step_size};
@@ -136,7 +136,8 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
         let mut smallest_pivot_ratio = 1.0_f64;
         let iteration = newton::iterate(|correction| {
             let (residual, kkt) = self.action.linearize(&start, &difference, &impulse);
-            constraint_residual = largest_constraint_residual::<S>(&residual);
+            let constraint_rows = residual.as_ref()[S::N_COORDINATES..].iter().copied();
+            constraint_residual = largest_magnitude(constraint_rows);
             let kkt = kkt.factor().map_err(|matrix| IterationFailure::Singular { correction, matrix })?;
             smallest_pivot_ratio = smallest_pivot_ratio.min(kkt.pivot_ratio());
             let mut update = residual;
@@ -155,8 +156,4 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
             Err(failure) => Err(IterationFailure::at(failure, t, constraint_residual, smallest_pivot_ratio)),
         }
     }
-}
-
-fn largest_constraint_residual<S: MechanicalSystem>(residual: &S::PerUnknown<f64>) -> f64 {
-    (0..S::N_CONSTRAINTS).fold(0.0, |largest: f64, c| largest.max(residual[constraint_index::<S>(c)].abs()))
 }

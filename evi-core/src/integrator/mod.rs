@@ -90,6 +90,14 @@ pub enum StepError {
         /// Why.
         cause: ProjectionError,
     },
+    /// The time to move to is no number of steps away: not finite, or farther than a float counts steps.
+    #[error("t = {target} cannot be reached in steps of h = {h}")]
+    UnreachableTime {
+        /// The time to move to.
+        target: f64,
+        /// Step size.
+        h: f64,
+    },
     /// The end of the step is not finite.
     #[error("the state at t = {t} is not finite")]
     NotFinite {

@@ -65,9 +65,9 @@ impl<S: MechanicalSystem, M: OneStep<S>> Run<S, M> {
     /// Takes steps until the next one would end beyond `t` by more than half a step.
     ///
     /// # Errors
-    /// [`StepError`] of the first step that fails; the run stands before it.
+    /// [`StepError`] of the first step that fails; the run stands before it. [`StepError::UnreachableTime`] before any step.
     pub fn advance_to(&mut self, t: f64) -> Result<&State<S>, StepError> {
-        for _ in 0..self.steps_to(t) {
+        for _ in 0..self.steps_to(t)? {
             self.advance()?;
         }
         Ok(&self.state)
@@ -79,8 +79,12 @@ impl<S: MechanicalSystem, M: OneStep<S>> Run<S, M> {
     /// [`Interrupted`] with the states up to the step that failed.
     #[cfg(feature = "std")]
     pub fn integrate(&mut self, duration: f64) -> Result<Trajectory<S>, Interrupted<S>> {
-        let steps = self.steps_to(self.state.t + duration);
-        let mut trajectory = Trajectory::starting_at(self.state.clone(), steps);
+        let start = self.state.clone();
+        let steps = match self.steps_to(start.t + duration) {
+            Ok(steps) => steps,
+            Err(error) => return Err(Interrupted { error, trajectory: Trajectory::starting_at(start, 0) }),
+        };
+        let mut trajectory = Trajectory::starting_at(start, steps);
         for _ in 0..steps {
             match self.advance() {
                 Ok(state) => trajectory.push(state.clone()),
@@ -91,10 +95,17 @@ impl<S: MechanicalSystem, M: OneStep<S>> Run<S, M> {
     }
 
     /// Number of whole steps nearest to the span from here to `t`; 0 if `t` lies on the other side.
-    fn steps_to(&self, t: f64) -> u64 {
-        let steps = (t - self.state.t) / self.map.h();
-        // The cast saturates: NaN and negative numbers become 0.
-        (steps + 0.5) as u64
+    fn steps_to(&self, t: f64) -> Result<u64, StepError> {
+        /// Up to here every whole number is a float.
+        const MOST_STEPS: f64 = (1_u64 << f64::MANTISSA_DIGITS) as f64;
+        let h = self.map.h();
+        let steps = (t - self.state.t) / h;
+        if steps.abs() < MOST_STEPS {
+            // The cast saturates: negative numbers become 0.
+            Ok((steps + 0.5) as u64)
+        } else {
+            Err(StepError::UnreachableTime { target: t, h })
+        }
     }
 }
 

@@ -40,7 +40,7 @@ pub enum StartError {
     /// A number of the start, or the energy there, is not finite.
     #[error("{quantity} {index} of the start is not finite: {value}")]
     NotFinite {
-        /// `position`, `velocity`, or `energy` (then `index` is 0).
+        /// `position` or `velocity`; `time` or `energy` (then `index` is 0).
         quantity: &'static str,
         /// Index in its vector.
         index: usize,
@@ -137,7 +137,7 @@ impl<S: MechanicalSystem, F: Scheme<S>> Simulation<S, F> {
         let (q, v) = (q.into(), v.into());
         let mechanics = step.mechanics();
         check_finite(mechanics, t, &q, &v)?;
-        let q = mechanics.project_configuration(t, q, &v)?;
+        let q = mechanics.project_configuration(t, &q, &v)?;
         let state = project_velocity(mechanics, t, q, v)?;
         Ok(Run::new(step, state))
     }

@@ -28,11 +28,16 @@ where
         let (mut smallest, mut largest) = (f64::INFINITY, 0.0_f64);
         for i in 0..D {
             let pivot = factors.lu_internal()[(i, i)].abs();
-            // Written so that a NaN pivot survives both comparisons.
+            // Written so that a NaN pivot survives both comparisons: NaN entries reach the last pivot.
             smallest = if pivot >= smallest { smallest } else { pivot };
             largest = if pivot <= largest { largest } else { pivot };
         }
-        let pivot_ratio = if D == 0 { 1.0 } else { smallest / largest };
+        let pivot_ratio = match smallest {
+            _ if D == 0 => 1.0,
+            // The zero matrix, whose quotient is not a number.
+            0.0 => 0.0,
+            _ => smallest / largest,
+        };
         if pivot_ratio > singular_pivot_ratio(D) {
             Ok(Self { factors, pivot_ratio })
         } else {
@@ -42,6 +47,10 @@ where
 
     #[inline]
     fn solve(&self, rhs: &mut [f64; D]) {
+        // nalgebra's triangular solve counts down from D − 1.
+        if D == 0 {
+            return;
+        }
         let mut solution = SVector::<f64, D>::from(*rhs);
         let solved = self.factors.solve_mut(&mut solution);
         assert!(solved, "a factored matrix has nonzero pivots");
@@ -75,8 +84,8 @@ mod tests {
     where
         Const<D>: DimMin<Const<D>, Output = Const<D>>,
     {
-        /// Sizes of condition numbers of uniformly random matrices: a few per thousand are above 1e3 D.
-        const WORST_CONDITION: f64 = 1e6;
+        /// Condition numbers of the worst matrices met here: 1.6e3 ε of the solution measured.
+        const WORST_CONDITION: f64 = 1e4;
         let mut seed = D as u64;
         for _ in 0..200 {
             let matrix: [[f64; D]; D] = core::array::from_fn(|_| core::array::from_fn(|_| random(&mut seed)));
@@ -87,16 +96,16 @@ mod tests {
             factors.solve(&mut solution);
             let oracle = SMatrix::<f64, D, D>::from_fn(|row, col| matrix[row][col])
                 .full_piv_lu()
-                .solve(&SVector::from(rhs))
+                .solve::<Const<D>, Const<1>, _>(&SVector::from(rhs))
                 .expect("random matrices are regular");
             let difference = (SVector::from(solution) - oracle).norm();
             assert!(difference <= WORST_CONDITION * f64::EPSILON * oracle.norm(), "{difference:e}");
-            // Backward error: independent of the condition number.
+            // Backward error, independent of the condition number: 3 ε measured.
             for row in 0..D {
                 let terms: [f64; D] = core::array::from_fn(|col| matrix[row][col] * solution[col]);
                 let scale: f64 = terms.iter().map(|term| term.abs()).sum::<f64>() + rhs[row].abs();
                 let residual = terms.iter().sum::<f64>() - rhs[row];
-                assert!(residual.abs() <= 1e2 * f64::EPSILON * scale.max(1.0), "{residual:e}");
+                assert!(residual.abs() <= 16.0 * f64::EPSILON * scale, "{residual:e}");
             }
         }
     }
@@ -160,7 +169,7 @@ mod tests {
                 assert!(pivot_ratio_of_singular(matrix).is_nan(), "row {row}, column {col}");
                 matrix[row][col] = f64::INFINITY;
                 let pivot_ratio = pivot_ratio_of_singular(matrix);
-                assert!(!(pivot_ratio > 0.0), "row {row}, column {col}: {pivot_ratio}");
+                assert!(pivot_ratio.is_nan() || pivot_ratio == 0.0, "row {row}, column {col}: {pivot_ratio}");
             }
         }
     }

@@ -31,3 +31,12 @@ pub struct SingularMatrix {
     /// Smallest pivot over largest; NaN when the matrix has entries that are not finite.
     pub pivot_ratio: f64,
 }
+
+/// Maximum norm. A NaN among the values survives every later comparison: an iteration that left the numbers must not
+/// seem to converge.
+#[inline]
+pub(crate) fn largest_magnitude(values: impl IntoIterator<Item = f64>) -> f64 {
+    values.into_iter().fold(0.0, |largest: f64, value| {
+        if value.abs() <= largest || largest.is_nan() { largest } else { value.abs() }
+    })
+}

@@ -2,7 +2,7 @@
 
 use super::Mechanics;
 use crate::array::Array;
-use crate::linear::{FactoredKkt, SingularMatrix, constraint_index, unknowns};
+use crate::linear::{FactoredKkt, Kkt, SingularMatrix, constraint_index, unknowns};
 use crate::newton::{self, NotConverged};
 use crate::system::{LagrangianGradient, MechanicalSystem};
 
@@ -100,30 +100,81 @@ impl<S: MechanicalSystem> Mechanics<S> {
         }
     }
 
-    /// The configuration on the manifold nearest to `q` in the metric of the mass matrix at `(q, v)`.
+    /// The configuration on the manifold nearest to `start` in the metric of the mass matrix at `(start, v)`.
     ///
-    /// Newton's iteration on `M δq + Gᵀ μ = 0`, `G δq = −φ`, with `G` at the current point.
+    /// Newton's iteration on `M (q − start) + Gᵀ μ = 0`, `φ(q) = 0`. Without the displacement in the first row,
+    /// `q` would be on the manifold, but not nearest; without the curvature `Σ μ φ_qq` in its derivative,
+    /// convergence would be linear and fail at distances of a fifth of the radius of curvature.
     pub(crate) fn project_configuration(
         &self,
         t: f64,
-        mut q: S::PerCoordinate<f64>,
+        start: &S::PerCoordinate<f64>,
         v: &S::PerCoordinate<f64>,
     ) -> Result<S::PerCoordinate<f64>, ProjectionError> {
+        let mut q = start.clone();
         if S::N_CONSTRAINTS == 0 {
             return Ok(q);
         }
+        let (_, hessian) = S::lagrangian_derivatives(&self.constants, t, start, v);
+        let mut multipliers = S::PerConstraint::<f64>::from_fn(|_| 0.0);
         newton::iterate(|_| -> Result<f64, ProjectionError> {
-            let (_, hessian) = S::lagrangian_derivatives(&self.constants, t, &q, v);
             let (residual, jacobian) = S::constraint_derivatives(&self.constants, t, &q);
-            let kkt = self.mass_kkt(hessian.as_ref(), jacobian.as_ref()).factor()?;
-            let mut correction = unknowns::<S>(|_| 0.0, |c| -residual[c]);
+            let mut kkt = self.mass_kkt(hessian.as_ref(), jacobian.as_ref());
+            self.add_constraint_hessian(t, &q, &multipliers, &mut kkt);
+            let kkt = kkt.factor()?;
+            let displacement = S::PerCoordinate::<f64>::from_fn(|i| q[i] - start[i]);
+            let mut pull = self.mass_times(hessian.as_ref(), &displacement);
+            self.add_constraint_force(jacobian.as_ref(), multipliers.as_ref(), pull.as_mut());
+            let mut correction = unknowns::<S>(|i| -pull[i], |c| -residual[c]);
             kkt.solve(&mut correction);
             for i in 0..S::N_COORDINATES {
                 q[i] += correction[i];
             }
+            for c in 0..S::N_CONSTRAINTS {
+                multipliers[c] += correction[constraint_index::<S>(c)];
+            }
             Ok(relative(kkt.scaled_length(correction.as_ref()), kkt.scaled_length(q.as_ref())))
         })?;
         Ok(q)
+    }
+
+    /// Adds `Σ μ φ_qq` to the block of the coordinates.
+    fn add_constraint_hessian(
+        &self,
+        t: f64,
+        q: &S::PerCoordinate<f64>,
+        multipliers: &S::PerConstraint<f64>,
+        kkt: &mut Kkt<S>,
+    ) {
+        let weighted_curvature = |direction: S::PerCoordinate<f64>| -> f64 {
+            let curvature = S::constraint_curvature(&self.constants, t, q, &direction);
+            curvature.as_ref().iter().zip(multipliers.as_ref()).map(|(c, multiplier)| c * multiplier).sum()
+        };
+        let unit = |i: usize, j: usize| if i == j { 1.0 } else { 0.0 };
+        let at_rest = weighted_curvature(Array::from_fn(|_| 0.0));
+        let along =
+            S::PerCoordinate::<f64>::from_fn(|col| weighted_curvature(Array::from_fn(|i| unit(i, col))));
+        for row in 0..S::N_COORDINATES {
+            for col in 0..S::N_COORDINATES {
+                // γ is a quadratic polynomial of the velocity: γ(a + b) − γ(a) − γ(b) + γ(0) leaves twice its
+                // bilinear form, without the terms of time.
+                let along_both = weighted_curvature(Array::from_fn(|i| unit(i, row) + unit(i, col)));
+                kkt.add_block(row, col, 0.5 * (along_both - along[row] - along[col] + at_rest));
+            }
+        }
+    }
+
+    /// `M x`.
+    fn mass_times(&self, hessian: &[f64], x: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
+        let mut product = S::PerCoordinate::<f64>::from_fn(|_| 0.0);
+        for entry in S::STRUCTURE.hessian.vv {
+            let mass = entry.value(self.constants.as_ref(), hessian);
+            product[entry.row] += mass * x[entry.col];
+            if entry.row != entry.col {
+                product[entry.col] += mass * x[entry.row];
+            }
+        }
+        product
     }
 
     /// The velocity that satisfies `G v + ∂φ/∂t = 0` nearest to `v` in the metric of the mass matrix, and its

@@ -121,7 +121,7 @@ mod tests {
     /// Bases of both signs, none with short powers.
     const BASES: [f64; 6] = [-2.7, -1.1, -0.3, 0.3, 1.1, 2.7];
 
-    /// `|exponent|` multiplications and a division, each within half an ulp of its result, make at most 10 half ulps.
+    /// `|exponent|` multiplications and a division, each within half an ulp of its result: 10 half ulps at most.
     fn check_power(power: f64, exact: f64, epsilon: f64) {
         let error = (power - exact).abs() / exact.abs();
         assert!(error <= 5.0 * epsilon, "{power} for {exact}: {:.1} ulp", error / epsilon);

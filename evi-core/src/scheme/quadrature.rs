@@ -71,7 +71,7 @@ impl<const S: usize> Quadrature<S> {
         })
     }
 
-    /// The rule on the given nodes.
+    /// The rule on the given nodes. Nodes that mirror each other up to rounding are made to do so exactly.
     ///
     /// # Errors
     /// [`QuadratureError`] for nodes outside `[0, 1]` or nodes that coincide.
@@ -85,7 +85,10 @@ impl<const S: usize> Quadrature<S> {
                 return Err(QuadratureError::CoincidingNodes { first, second: index, node });
             }
         }
-        Ok(Self::with_offsets(nodes.map(|node| node - 0.5)))
+        let offsets = nodes.map(|node| node - 0.5);
+        // Decimal nodes such as 0.2 and 0.8 mirror each other only up to their rounding.
+        let mirrored = (0..S).all(|j| (offsets[j] + offsets[S - 1 - j]).abs() <= 0.5 * f64::EPSILON);
+        Ok(if mirrored { Self::with_symmetric_offsets(|j| offsets[j]) } else { Self::with_offsets(offsets) })
     }
 
     /// Nodes as offsets from the midpoint, `σⱼ = cⱼ − ½`, in `[−½, ½]`.
