@@ -1,15 +1,16 @@
 //! What stands in for the implementation where the struct has mistakes.
 
-use proc_macro2::TokenStream;
+use proc_macro2::{Delimiter, Group, TokenStream};
 use quote::{quote, quote_spanned};
 
 use super::storage::{Sizes, associated_types};
-use crate::diagnostics::Diagnostics;
+use crate::diagnostics::{Diagnostics, Mistake};
 use crate::model::{constraint_names, coordinate_names};
 use crate::syntax::Declaration;
 
-/// The mistakes as compile errors, and a stub with the true sizes: code that uses the system type-checks as it will
-/// when they are mended, so that no second wave of errors hides the first.
+/// The mistakes as compile errors, and a stub with the true sizes: code that uses the system type-checks as
+/// it will when they are mended, so that no second wave of errors hides the first. Its scalar is called
+/// `__T`: a struct that is generic by mistake has most likely a `T` of its own.
 pub(crate) fn fallback(declaration: &Declaration, diagnostics: &Diagnostics) -> TokenStream {
     let errors = compile_errors(diagnostics);
     let struct_name = &declaration.name;
@@ -17,7 +18,7 @@ pub(crate) fn fallback(declaration: &Declaration, diagnostics: &Diagnostics) -> 
     let (impl_generics, type_generics, where_clause) =
         (&generics.impl_generics, &generics.type_generics, &generics.where_clause);
     let coordinates: Vec<String> = coordinate_names(declaration).iter().map(ToString::to_string).collect();
-    let constraints: Vec<String> = constraint_names(declaration).iter().map(ToString::to_string).collect();
+    let constraints = constraint_names(declaration);
     let sizes = Sizes {
         n_coordinates: coordinates.len(),
         n_constraints: constraints.len(),
@@ -33,7 +34,9 @@ pub(crate) fn fallback(declaration: &Declaration, diagnostics: &Diagnostics) -> 
         const _: () = {
             #[automatically_derived]
             #[allow(unused)]
-            impl #impl_generics ::evi_core::__private::MechanicalSystem for #struct_name #type_generics #where_clause {
+            impl #impl_generics ::evi_core::__private::MechanicalSystem for #struct_name #type_generics
+            #where_clause
+            {
                 const COORDINATES: &'static [&'static str] = &[#(#coordinates),*];
                 const CONSTRAINTS: &'static [&'static str] = &[#(#constraints),*];
                 const PARAMETERS: &'static [&'static str] = &[];
@@ -43,54 +46,84 @@ pub(crate) fn fallback(declaration: &Declaration, diagnostics: &Diagnostics) -> 
                 fn parameters(&self) -> Self::PerParameter<f64> {
                     ::core::unimplemented!()
                 }
-                fn constants<T: ::evi_core::__private::Scalar>(p: &Self::PerParameter<T>) -> Self::PerConstant<T> {
+                fn constants<__T: ::evi_core::__private::Scalar>(
+                    p: &Self::PerParameter<__T>,
+                ) -> Self::PerConstant<__T> {
                     ::core::unimplemented!()
                 }
-                fn lagrangian<T: ::evi_core::__private::Scalar>(
-                    c: &Self::PerConstant<T>, t: T, q: &Self::PerCoordinate<T>, v: &Self::PerCoordinate<T>,
-                ) -> T {
+                fn lagrangian<__T: ::evi_core::__private::Scalar>(
+                    c: &Self::PerConstant<__T>,
+                    t: __T,
+                    q: &Self::PerCoordinate<__T>,
+                    v: &Self::PerCoordinate<__T>,
+                ) -> __T {
                     ::core::unimplemented!()
                 }
-                fn lagrangian_gradient<T: ::evi_core::__private::Scalar>(
-                    c: &Self::PerConstant<T>, t: T, q: &Self::PerCoordinate<T>, v: &Self::PerCoordinate<T>,
-                ) -> ::evi_core::__private::LagrangianGradient<Self, T> {
+                fn lagrangian_gradient<__T: ::evi_core::__private::Scalar>(
+                    c: &Self::PerConstant<__T>,
+                    t: __T,
+                    q: &Self::PerCoordinate<__T>,
+                    v: &Self::PerCoordinate<__T>,
+                ) -> ::evi_core::__private::LagrangianGradient<Self, __T> {
                     ::core::unimplemented!()
                 }
-                fn lagrangian_derivatives<T: ::evi_core::__private::Scalar>(
-                    c: &Self::PerConstant<T>, t: T, q: &Self::PerCoordinate<T>, v: &Self::PerCoordinate<T>,
-                ) -> (::evi_core::__private::LagrangianGradient<Self, T>, Self::PerHessianEntry<T>) {
+                fn lagrangian_derivatives<__T: ::evi_core::__private::Scalar>(
+                    c: &Self::PerConstant<__T>,
+                    t: __T,
+                    q: &Self::PerCoordinate<__T>,
+                    v: &Self::PerCoordinate<__T>,
+                ) -> (::evi_core::__private::LagrangianGradient<Self, __T>, Self::PerHessianEntry<__T>) {
                     ::core::unimplemented!()
                 }
-                fn constraints<T: ::evi_core::__private::Scalar>(
-                    c: &Self::PerConstant<T>, t: T, q: &Self::PerCoordinate<T>,
-                ) -> Self::PerConstraint<T> {
+                fn constraints<__T: ::evi_core::__private::Scalar>(
+                    c: &Self::PerConstant<__T>,
+                    t: __T,
+                    q: &Self::PerCoordinate<__T>,
+                ) -> Self::PerConstraint<__T> {
                     ::core::unimplemented!()
                 }
-                fn constraint_derivatives<T: ::evi_core::__private::Scalar>(
-                    c: &Self::PerConstant<T>, t: T, q: &Self::PerCoordinate<T>,
-                ) -> (Self::PerConstraint<T>, Self::PerJacobianEntry<T>) {
+                fn constraint_derivatives<__T: ::evi_core::__private::Scalar>(
+                    c: &Self::PerConstant<__T>,
+                    t: __T,
+                    q: &Self::PerCoordinate<__T>,
+                ) -> (Self::PerConstraint<__T>, Self::PerJacobianEntry<__T>) {
                     ::core::unimplemented!()
                 }
-                fn constraint_curvature<T: ::evi_core::__private::Scalar>(
-                    c: &Self::PerConstant<T>, t: T, q: &Self::PerCoordinate<T>, v: &Self::PerCoordinate<T>,
-                ) -> Self::PerConstraint<T> {
+                fn constraint_curvature<__T: ::evi_core::__private::Scalar>(
+                    c: &Self::PerConstant<__T>,
+                    t: __T,
+                    q: &Self::PerCoordinate<__T>,
+                    v: &Self::PerCoordinate<__T>,
+                ) -> Self::PerConstraint<__T> {
                     ::core::unimplemented!()
                 }
             }
 
             #[automatically_derived]
             #[allow(unused)]
-            impl #impl_generics ::evi_core::__private::GenericSystem for #struct_name #type_generics #where_clause {
+            impl #impl_generics ::evi_core::__private::GenericSystem for #struct_name #type_generics
+            #where_clause
+            {
                 fn n_coordinates(&self) -> usize {
                     #n_coordinates
                 }
                 fn n_constraints(&self) -> usize {
                     #n_constraints
                 }
-                fn lagrangian<T: ::evi_core::__private::Scalar>(&self, t: T, q: &[T], v: &[T]) -> T {
+                fn lagrangian<__T: ::evi_core::__private::Scalar>(
+                    &self,
+                    t: __T,
+                    q: &[__T],
+                    v: &[__T],
+                ) -> __T {
                     ::core::unimplemented!()
                 }
-                fn constraints<T: ::evi_core::__private::Scalar>(&self, t: T, q: &[T], residuals: &mut [T]) {
+                fn constraints<__T: ::evi_core::__private::Scalar>(
+                    &self,
+                    t: __T,
+                    q: &[__T],
+                    residuals: &mut [__T],
+                ) {
                     ::core::unimplemented!()
                 }
             }
@@ -98,11 +131,14 @@ pub(crate) fn fallback(declaration: &Declaration, diagnostics: &Diagnostics) -> 
     }
 }
 
-/// The mistakes as compile errors, each at its token.
+/// The mistakes as compile errors, each at its tokens.
 pub(crate) fn compile_errors(diagnostics: &Diagnostics) -> TokenStream {
-    let error = |mistake: &crate::diagnostics::Mistake| {
+    let error = |mistake: &Mistake| {
         let message = &mistake.message;
-        quote_spanned!(mistake.span=> ::core::compile_error!(#message);)
+        let mut argument = Group::new(Delimiter::Brace, quote_spanned!(mistake.last=> #message));
+        argument.set_span(mistake.last);
+        // The compiler marks an invocation from its first to its last token.
+        quote_spanned!(mistake.first=> ::core::compile_error! #argument)
     };
-    diagnostics.mistakes().iter().map(error).collect()
+    diagnostics.mistakes().into_iter().map(error).collect()
 }

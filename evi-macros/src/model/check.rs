@@ -1,56 +1,54 @@
 //! Mistakes of meaning that no single name shows.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use proc_macro2::{Ident, Span};
 
 use super::coordinate_names;
 use crate::diagnostics::Diagnostics;
 use crate::expr::{ExprId, Graph, Symbol};
-use crate::syntax::{Constraint, Declaration, Expression, Item};
+use crate::syntax::{Declaration, Expression, Item};
 
 /// Reports names that are reserved or given twice.
 pub(super) fn names(declaration: &Declaration, diagnostics: &mut Diagnostics) {
     let fields = declaration.fields.iter().map(|field| ("field", &field.name));
-    let coordinates = coordinate_names(declaration);
-    let coordinates = coordinates.iter().map(|name| ("coordinate", name));
+    let coordinates = coordinate_names(declaration).iter().map(|name| ("coordinate", name));
     let lets = declaration.items.iter().filter_map(|item| match item {
         Item::Let(definition) => Some(("shared expression", &definition.name)),
         _ => None,
     });
     let mut owners: HashMap<String, &str> = HashMap::new();
     for (kind, name) in fields.chain(coordinates).chain(lets) {
-        let text = name.to_string();
-        if matches!(text.as_str(), "t" | "der") {
-            let meaning = if text == "t" { "the time" } else { "the time derivative" };
-            diagnostics.report(name.span(), format!("`{text}` is {meaning}: a {kind} needs another name"));
-        } else if let Some(owner) = owners.insert(text, kind) {
+        if reserved(kind, name, diagnostics) {
+            continue;
+        }
+        if let Some(owner) = owners.insert(name.to_string(), kind) {
             diagnostics.report(name.span(), format!("the name `{name}` is taken by a {owner}"));
         }
     }
-    let mut constraints: HashMap<String, ()> = HashMap::new();
-    for constraint in super::constraints(declaration) {
-        if constraints.insert(constraint.name.to_string(), ()).is_some() {
-            let message =
-                format!("there is a constraint `{}` already: each needs a name of its own", constraint.name);
-            diagnostics.report(constraint.name.span(), message);
+    let mut constraints: HashSet<String> = HashSet::new();
+    for name in super::constraints(declaration).filter_map(|constraint| constraint.name.as_ref()) {
+        if !constraints.insert(name.to_string()) {
+            let message = format!("there is a constraint `{name}` already: each needs a name of its own");
+            diagnostics.report(name.span(), message);
         }
     }
+}
+
+/// Reports a name that has a meaning of its own.
+pub(super) fn reserved(kind: &str, name: &Ident, diagnostics: &mut Diagnostics) -> bool {
+    let meaning = match name.to_string().as_str() {
+        "t" => "the time",
+        "der" => "the time derivative",
+        _ => return false,
+    };
+    diagnostics.report(name.span(), format!("`{name}` is {meaning}: a {kind} needs another name"));
+    true
 }
 
 /// Reports items that are missing or given twice.
 pub(super) fn items(declaration: &Declaration, diagnostics: &mut Diagnostics) {
     let struct_name = declaration.name.span();
-    if declaration.items.is_empty() {
-        // Every item was mistaken, or there is no attribute: reported already.
-        if diagnostics.is_empty() {
-            diagnostics.report(
-                struct_name,
-                "the attribute is empty: write #[evi(coordinates(..), lagrangian = ..)]",
-            );
-        }
-        return;
-    }
     let only = |keyword: fn(&Item) -> Option<&Ident>, diagnostics: &mut Diagnostics| -> Option<Span> {
         let mut keywords = declaration.items.iter().filter_map(keyword);
         let first = keywords.next()?;
@@ -59,8 +57,8 @@ pub(super) fn items(declaration: &Declaration, diagnostics: &mut Diagnostics) {
         }
         Some(first.span())
     };
-    let coordinates = only(
-        |item| if let Item::Coordinates { keyword, .. } = item { Some(keyword) } else { None },
+    only(
+        |item| if let Item::Coordinates(coordinates) = item { Some(&coordinates.keyword) } else { None },
         diagnostics,
     );
     let lagrangian = only(
@@ -73,19 +71,25 @@ pub(super) fn items(declaration: &Declaration, diagnostics: &mut Diagnostics) {
         |item| if let Item::Potential { keyword, .. } = item { Some(keyword) } else { None },
         diagnostics,
     );
-    match coordinates {
+    if let (Some(_), Some(energy), _) | (Some(_), None, Some(energy)) = (lagrangian, kinetic, potential) {
+        let message =
+            "the Lagrangian is given twice: write either `lagrangian = ..` or `kinetic = .., potential = ..`";
+        diagnostics.report(energy, message);
+    }
+    let is_unknown = |item: &Item| matches!(item, Item::Unknown);
+    if declaration.items.is_empty() || declaration.items.iter().any(is_unknown) {
+        // Reported already: what seems to be missing may be what is unknown.
+        return;
+    }
+    match super::coordinates(declaration) {
         None => diagnostics.report(struct_name, "the coordinates are missing: write `coordinates(x, y, ..)`"),
-        Some(keyword) if coordinate_names(declaration).is_empty() && diagnostics.is_empty() => {
-            diagnostics.report(keyword, "a mechanical system has at least one coordinate");
+        Some(coordinates) if coordinates.is_complete && coordinates.names.is_empty() => {
+            diagnostics.report(coordinates.keyword.span(), "a mechanical system has at least one coordinate");
         }
         Some(_) => {}
     }
     match (lagrangian, kinetic, potential) {
-        (Some(_), None, None) | (None, Some(_), Some(_)) => {}
-        (Some(_), Some(energy), _) | (Some(_), None, Some(energy)) => diagnostics.report(
-            energy,
-            "the Lagrangian is given twice: write either `lagrangian = ..` or `kinetic = .., potential = ..`",
-        ),
+        (Some(_), _, _) | (None, Some(_), Some(_)) => {}
         (None, Some(kinetic), None) => {
             diagnostics
                 .report(kinetic, "the potential is missing: write `potential = ..` (0.0 if there is none)");
@@ -114,8 +118,10 @@ pub(super) fn every_coordinate_has_inertia(
         (None, None) => return,
     };
     let symbols = graph.symbols(&[root]);
-    for (index, name) in coordinate_names(declaration).iter().enumerate() {
-        if !symbols.contains(&Symbol::Velocity(index)) {
+    let names = coordinate_names(declaration);
+    for (index, name) in names.iter().enumerate() {
+        let is_repeated = names[..index].contains(name);
+        if !is_repeated && !symbols.contains(&Symbol::Velocity(index)) {
             let message = format!("coordinate `{name}` has no mass: `der({name})` is missing in {place}");
             diagnostics.report(name.span(), message);
         }
@@ -124,13 +130,12 @@ pub(super) fn every_coordinate_has_inertia(
 
 /// Reports a constraint that no motion can change.
 pub(super) fn constraint_moves_with_coordinates(
-    constraint: &Constraint,
+    name: &Ident,
     residual: ExprId,
     graph: &Graph,
     diagnostics: &mut Diagnostics,
 ) {
     if !graph.dependence(residual).on_q {
-        let message = format!("constraint `{}` contains no coordinate", constraint.name);
-        diagnostics.report(constraint.name.span(), message);
+        diagnostics.report(name.span(), format!("constraint `{name}` contains no coordinate"));
     }
 }

@@ -1,6 +1,7 @@
 //! From items to a mechanical system: names resolved, equations in the graph, mistakes of meaning found.
 //!
-//! In: a [`Declaration`]. Out: a [`Model`], or `None` with mistakes reported. Everything is looked at before giving up.
+//! In: a [`Declaration`]. Out: a [`Model`], or `None` with mistakes reported. Everything is looked at before
+//! giving up.
 
 mod check;
 mod resolve;
@@ -9,7 +10,7 @@ use proc_macro2::{Ident, TokenStream};
 
 use crate::diagnostics::Diagnostics;
 use crate::expr::{ExprId, Graph, Symbol};
-use crate::syntax::{Constraint, Declaration, Expression, Item};
+use crate::syntax::{Constraint, Coordinates, Declaration, Expression, Item};
 use resolve::Scope;
 
 /// A Lagrangian system in the graph.
@@ -50,20 +51,21 @@ pub(crate) enum LagrangianSource {
 }
 
 /// The coordinates in the order of their declaration, right or wrong.
-pub(crate) fn coordinate_names(declaration: &Declaration) -> Vec<Ident> {
-    declaration
-        .items
-        .iter()
-        .find_map(|item| match item {
-            Item::Coordinates { names, .. } => Some(names.clone()),
-            _ => None,
-        })
-        .unwrap_or_default()
+pub(crate) fn coordinate_names(declaration: &Declaration) -> &[Ident] {
+    coordinates(declaration).map_or(&[], |coordinates| &coordinates.names)
 }
 
-/// The constraints in the order of their declaration, right or wrong.
-pub(crate) fn constraint_names(declaration: &Declaration) -> Vec<Ident> {
-    constraints(declaration).map(|constraint| constraint.name.clone()).collect()
+/// The constraints in the order of their declaration, right or wrong, those without a name included.
+pub(crate) fn constraint_names(declaration: &Declaration) -> Vec<String> {
+    let name = |constraint: &Constraint| constraint.name.as_ref().map_or_else(String::new, Ident::to_string);
+    constraints(declaration).map(name).collect()
+}
+
+fn coordinates(declaration: &Declaration) -> Option<&Coordinates> {
+    declaration.items.iter().find_map(|item| match item {
+        Item::Coordinates(coordinates) => Some(coordinates),
+        _ => None,
+    })
 }
 
 fn constraints(declaration: &Declaration) -> impl Iterator<Item = &Constraint> {
@@ -79,6 +81,9 @@ pub(crate) fn resolve(
     graph: &mut Graph,
     diagnostics: &mut Diagnostics,
 ) -> Option<Model> {
+    if declaration.has_mistaken_shape {
+        return None;
+    }
     check::names(declaration, diagnostics);
     check::items(declaration, diagnostics);
     let mut scope = Scope::new(declaration);
@@ -87,15 +92,18 @@ pub(crate) fn resolve(
     let mut constraints = Vec::new();
     for item in &declaration.items {
         match item {
-            Item::Coordinates { .. } => {}
+            Item::Coordinates(_) | Item::Unknown => {}
             Item::Lagrangian { value, .. } => {
-                whole = whole.or(scope.equation("the Lagrangian", value, graph, diagnostics));
+                let equation = scope.equation("the Lagrangian", value.as_ref(), graph, diagnostics);
+                whole = whole.or(equation);
             }
             Item::Kinetic { value, .. } => {
-                kinetic = kinetic.or(scope.equation("the kinetic energy", value, graph, diagnostics));
+                let equation = scope.equation("the kinetic energy", value.as_ref(), graph, diagnostics);
+                kinetic = kinetic.or(equation);
             }
             Item::Potential { value, .. } => {
-                potential = potential.or(scope.equation("the potential", value, graph, diagnostics));
+                let equation = scope.equation("the potential", value.as_ref(), graph, diagnostics);
+                potential = potential.or(equation);
             }
             Item::Let(definition) => {
                 lets.extend(scope.shared(definition, graph, diagnostics));
@@ -106,8 +114,8 @@ pub(crate) fn resolve(
         }
     }
     check::every_coordinate_has_inertia(declaration, &kinetic, &whole, graph, diagnostics);
-    for (constraint, (_, residual, _)) in self::constraints(declaration).zip(&constraints) {
-        check::constraint_moves_with_coordinates(constraint, *residual, graph, diagnostics);
+    for (name, residual, _) in &constraints {
+        check::constraint_moves_with_coordinates(name, *residual, graph, diagnostics);
     }
     if !diagnostics.is_empty() {
         return None;
@@ -127,7 +135,7 @@ pub(crate) fn resolve(
         _ => None,
     });
     Some(Model {
-        coordinates: coordinate_names(declaration),
+        coordinates: coordinate_names(declaration).to_vec(),
         parameters: parameters.collect(),
         named_constants: scope.into_named_constants(),
         lagrangian,

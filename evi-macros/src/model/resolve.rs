@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use proc_macro2::{Ident, Span, TokenStream};
 
-use super::{SourceLet, coordinate_names};
+use super::{SourceLet, check, coordinate_names, coordinates};
 use crate::diagnostics::{Diagnostics, suggestion};
 use crate::expr::{ExprId, Graph, Symbol};
 use crate::syntax::{Constraint, Declaration, Expression, Field, Item, Let, Resolved, Resolver, lower};
@@ -12,7 +12,12 @@ use crate::syntax::{Constraint, Declaration, Expression, Field, Item, Let, Resol
 /// The names in reach of an equation.
 pub(super) struct Scope<'a> {
     fields: &'a [Field],
+    /// Fields of another type than f64 that have been reported.
+    reported_fields: Vec<usize>,
     coordinates: Vec<String>,
+    /// Whether these are all coordinates; otherwise a mistake has been reported there, and any name may be
+    /// one.
+    has_all_coordinates: bool,
     /// Shared subexpressions so far; `None` where the definition is mistaken.
     lets: HashMap<String, Option<ExprId>>,
     /// Names of all shared subexpressions, those further below included.
@@ -31,9 +36,13 @@ impl<'a> Scope<'a> {
             Item::Let(definition) => Some(definition.name.to_string()),
             _ => None,
         });
+        let names = coordinate_names(declaration);
+        let is_complete = coordinates(declaration).is_some_and(|coordinates| coordinates.is_complete);
         Self {
             fields: &declaration.fields,
-            coordinates: coordinate_names(declaration).iter().map(Ident::to_string).collect(),
+            reported_fields: Vec::new(),
+            coordinates: names.iter().map(Ident::to_string).collect(),
+            has_all_coordinates: is_complete && !names.is_empty(),
             lets: HashMap::new(),
             all_lets: all_lets.collect(),
             locals: Vec::new(),
@@ -47,10 +56,11 @@ impl<'a> Scope<'a> {
     pub(super) fn equation(
         &mut self,
         context: &str,
-        value: &Expression,
+        value: Option<&Expression>,
         graph: &mut Graph,
         diagnostics: &mut Diagnostics,
     ) -> Option<(ExprId, Expression)> {
+        let value = value?;
         self.context = context.to_owned();
         self.in_constraint = false;
         Some((lower(value, graph, self, diagnostics)?, value.clone()))
@@ -64,9 +74,7 @@ impl<'a> Scope<'a> {
         diagnostics: &mut Diagnostics,
     ) -> Option<SourceLet> {
         let name = definition.name.to_string();
-        let value = definition.value.as_ref();
-        let resolved =
-            value.and_then(|value| self.equation(&format!("`let {name}`"), value, graph, diagnostics));
+        let resolved = self.equation(&let_context(&name), definition.value.as_ref(), graph, diagnostics);
         self.lets.insert(name, resolved.as_ref().map(|(value, _)| *value));
         let (value, source) = resolved?;
         let has_velocity = graph.dependence(value).on_v;
@@ -80,21 +88,22 @@ impl<'a> Scope<'a> {
         graph: &mut Graph,
         diagnostics: &mut Diagnostics,
     ) -> Option<(Ident, ExprId, (Expression, Expression))> {
-        let (left, right) = constraint.sides.as_ref()?;
-        self.context = format!("constraint `{}`", constraint.name);
+        let name = constraint.name.as_ref()?;
+        self.context = format!("constraint `{name}`");
         self.in_constraint = true;
-        let (left_value, right_value) =
-            (lower(left, graph, self, diagnostics), lower(right, graph, self, diagnostics));
-        let residual = graph.sub(left_value?, right_value?);
-        Some((constraint.name.clone(), residual, (left.clone(), right.clone())))
+        // Both sides before either is given up, so that the mistakes of both are reported.
+        let mut side = |side: &Option<Expression>| {
+            let expression = side.as_ref()?;
+            Some((lower(expression, graph, self, diagnostics)?, expression.clone()))
+        };
+        let (left, right) = (side(&constraint.left), side(&constraint.right));
+        let ((left_value, left), (right_value, right)) = (left?, right?);
+        let residual = graph.sub(left_value, right_value);
+        Some((name.clone(), residual, (left, right)))
     }
 
     pub(super) fn into_named_constants(self) -> Vec<TokenStream> {
         self.named_constants.into_iter().map(|(_, path)| path).collect()
-    }
-
-    fn field_names(&self) -> impl Iterator<Item = String> {
-        self.fields.iter().map(|field| field.name.to_string())
     }
 }
 
@@ -121,19 +130,23 @@ impl Resolver for Scope<'_> {
         if text == "t" {
             return Resolved::Value(graph.symbol(Symbol::Time));
         }
-        if let Some(index) = self.field_names().position(|field| field == text) {
-            return match &self.fields[index].other_type {
-                None => Resolved::Value(graph.symbol(Symbol::Parameter(index))),
-                Some(other) => {
-                    let message =
-                        format!("`{text}` has the type `{other}`; a parameter of an equation is an f64");
-                    diagnostics.report(name.span(), message);
-                    Resolved::Mistaken
-                }
-            };
+        if let Some(index) = self.fields.iter().position(|field| field.name == text) {
+            if self.fields[index].is_f64 {
+                return Resolved::Value(graph.symbol(Symbol::Parameter(index)));
+            }
+            if !self.reported_fields.contains(&index) {
+                self.reported_fields.push(index);
+                let message = format!("field `{text}` is a parameter of an equation: its type must be f64");
+                diagnostics.report(name.span(), message);
+            }
+            return Resolved::Mistaken;
         }
         if self.all_lets.contains(&text) {
-            let message = format!("`{text}` is defined further below: move its `let` above this use");
+            let message = if self.context == let_context(&text) {
+                format!("`{text}` is defined by itself")
+            } else {
+                format!("`{text}` is defined further below: move its `let` above this use")
+            };
             diagnostics.report(name.span(), message);
             return Resolved::Mistaken;
         }
@@ -159,11 +172,21 @@ impl Resolver for Scope<'_> {
         if let Some(index) = self.coordinates.iter().position(|coordinate| *coordinate == text) {
             return Some(graph.symbol(Symbol::Velocity(index)));
         }
-        let similar = suggestion(&text, self.coordinates.iter().map(String::as_str));
-        let message = format!(
-            "`der` takes a coordinate, `{text}` is none{similar}\ncoordinates: {}",
-            self.coordinates.join(", ")
-        );
+        if !self.has_all_coordinates {
+            return None;
+        }
+        let is_local = self.locals.iter().flatten().any(|(local, _)| *local == text);
+        let message = if is_local || self.all_lets.contains(&text) {
+            format!("`der` takes a coordinate, `{text}` is a shared expression")
+        } else if self.fields.iter().any(|field| field.name == text) {
+            format!("`der` takes a coordinate, `{text}` is a parameter")
+        } else if text == "t" {
+            "`der` takes a coordinate, `t` is the time".to_owned()
+        } else {
+            let similar = suggestion(&text, self.coordinates.iter().map(String::as_str));
+            format!("unknown name `{text}` in {}{similar}", self.context)
+        };
+        let message = format!("{message}\ncoordinates: {}", self.coordinates.join(", "));
         diagnostics.report(name.span(), message);
         None
     }
@@ -178,7 +201,8 @@ impl Resolver for Scope<'_> {
         graph.symbol(Symbol::NamedConstant(index))
     }
 
-    fn define(&mut self, name: &Ident, value: Option<ExprId>) {
+    fn define(&mut self, name: &Ident, value: Option<ExprId>, diagnostics: &mut Diagnostics) {
+        check::reserved("shared expression", name, diagnostics);
         self.locals.last_mut().expect("a `let` stands in a block").push((name.to_string(), value));
     }
 
@@ -191,18 +215,24 @@ impl Resolver for Scope<'_> {
     }
 
     fn report_unknown(&self, name: &Ident, diagnostics: &mut Diagnostics) {
-        let fields: Vec<String> = self.field_names().collect();
-        let lets: Vec<&str> =
-            self.all_lets.iter().map(String::as_str).filter(|name| self.lets.contains_key(*name)).collect();
-        let known = self.coordinates.iter().chain(&fields).map(String::as_str).chain(lets.iter().copied());
-        let similar = suggestion(&name.to_string(), known);
-        let mut message = format!("unknown name `{name}` in {}{similar}", self.context);
-        message.push_str(&format!("\ncoordinates: {}", self.coordinates.join(", ")));
-        for (kind, names) in [("parameters", fields.join(", ")), ("shared", lets.join(", "))] {
-            if !names.is_empty() {
-                message.push_str(&format!("; {kind}: {names}"));
-            }
+        if !self.has_all_coordinates {
+            return;
         }
+        let parameters = self.fields.iter().filter(|field| field.is_f64);
+        let parameters: Vec<String> = parameters.map(|field| field.name.to_string()).collect();
+        let shared = self.all_lets.iter().filter(|name| self.lets.contains_key(*name)).cloned();
+        let shared: Vec<String> =
+            shared.chain(self.locals.iter().flatten().map(|(name, _)| name.clone())).collect();
+        let known = [("coordinates", &self.coordinates), ("parameters", &parameters), ("shared", &shared)];
+        let names = known.iter().flat_map(|(_, names)| names.iter()).map(String::as_str);
+        let similar = suggestion(&name.to_string(), names);
+        let lists = known.iter().filter(|(_, names)| !names.is_empty());
+        let lists: Vec<String> = lists.map(|(kind, names)| format!("{kind}: {}", names.join(", "))).collect();
+        let message = format!("unknown name `{name}` in {}{similar}\n{}", self.context, lists.join("; "));
         diagnostics.report(name.span(), message);
     }
+}
+
+fn let_context(name: &str) -> String {
+    format!("`let {name}`")
 }

@@ -1,8 +1,11 @@
 //! The expression language: from a Rust expression to a node of the graph.
 
 use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
+use quote::ToTokens;
+use syn::parse::{ParseStream, Parser};
 use syn::spanned::Spanned;
 
+use super::integers::{integer_division_message, integer_literal, is_integer, power_message};
 use crate::diagnostics::{Diagnostics, suggestion};
 use crate::expr::{Binary, ExprId, Graph, Unary};
 
@@ -29,7 +32,7 @@ pub(crate) trait Resolver {
     /// The node of a constant that rustc resolves.
     fn constant(&mut self, graph: &mut Graph, path: TokenStream) -> ExprId;
     /// Gives a name to the value of a `let` in a block, until the block ends.
-    fn define(&mut self, name: &Ident, value: Option<ExprId>);
+    fn define(&mut self, name: &Ident, value: Option<ExprId>, diagnostics: &mut Diagnostics);
     /// Opens a block.
     fn enter_block(&mut self);
     /// Closes the innermost block.
@@ -49,16 +52,25 @@ pub(crate) enum Resolved {
 impl Expression {
     /// Parses the tokens behind the token at `before`.
     pub(crate) fn parse(tokens: TokenStream, before: Span, diagnostics: &mut Diagnostics) -> Option<Self> {
-        let last = tokens.clone().into_iter().last().map_or(before, |token| token.span());
+        let Some(last) = tokens.clone().into_iter().last() else {
+            diagnostics.report(before, "expected an expression");
+            return None;
+        };
         // In parentheses that lie on the last token, an expression that breaks off is reported there.
         let mut group = Group::new(Delimiter::Parenthesis, tokens.clone());
-        group.set_span(last);
-        match syn::parse2::<syn::Expr>(TokenTree::Group(group).into()) {
-            Ok(syn::Expr::Paren(parenthesized)) => Some(Self { syntax: *parenthesized.expr, tokens }),
-            Ok(_) => {
-                diagnostics.report(last, "expected one expression");
-                None
+        group.set_span(last.span());
+        let whole = |input: ParseStream| {
+            let inside;
+            syn::parenthesized!(inside in input);
+            let expression = inside.parse()?;
+            if inside.is_empty() {
+                Ok(expression)
+            } else {
+                Err(inside.error("expected an operator before this"))
             }
+        };
+        match whole.parse2(TokenTree::Group(group).into()) {
+            Ok(syntax) => Some(Self { syntax, tokens }),
             Err(error) => {
                 diagnostics.report(error.span(), error.to_string());
                 None
@@ -95,23 +107,29 @@ impl<R: Resolver> Lowering<'_, R> {
             syn::Expr::MethodCall(call) => self.method(call),
             syn::Expr::Call(call) => self.call(call),
             syn::Expr::Block(block) if block.label.is_none() => self.block(&block.block),
-            syn::Expr::Field(field) => self.mistake(
-                field.span(),
-                "fields of the struct are named directly, without `self.`",
-            ),
+            syn::Expr::Field(field) => self.field(field),
             syn::Expr::Array(array) => {
-                self.mistake(array.span(), "a vector stands where a number is expected: coordinates are scalars")
+                self.mistake_over(array, "a vector where a number is expected: coordinates are scalars")
             }
             syn::Expr::Index(index) => {
-                self.mistake(index.span(), "nothing here has an index: coordinates are scalars")
+                self.value(&index.expr)?;
+                self.mistake_over(index, "nothing here has an index: coordinates are scalars")
             }
             syn::Expr::Cast(cast) => {
+                self.value(&cast.expr);
                 self.mistake(cast.as_token.span, "no cast is needed: every value is a real number")
             }
-            other => self.mistake(
-                other.span(),
-                "an equation is made of numbers, names, `der(..)`, `+ - * /`, methods such as `.sin()`, and blocks \
-                 with `let`",
+            syn::Expr::If(choice) => self.mistake(
+                choice.if_token.span,
+                "an equation has no `if`: it is differentiated twice, and a smooth formula is needed",
+            ),
+            syn::Expr::Assign(assign) => {
+                self.mistake(assign.eq_token.span, "`=` in an equation: shared expressions are written `let`")
+            }
+            other => self.mistake_over(
+                other,
+                "an equation is made of numbers, names, `der(..)`, `+ - * /`, methods such as `.sin()`, and \
+                 blocks with `let`",
             ),
         }
     }
@@ -119,6 +137,27 @@ impl<R: Resolver> Lowering<'_, R> {
     fn mistake(&mut self, span: Span, message: impl Into<String>) -> Option<ExprId> {
         self.diagnostics.report(span, message);
         None
+    }
+
+    /// A mistake that the whole of `syntax` is.
+    fn mistake_over(&mut self, syntax: &impl ToTokens, message: impl Into<String>) -> Option<ExprId> {
+        let tokens: Vec<TokenTree> = syntax.to_token_stream().into_iter().collect();
+        let (first, last) = (tokens.first().expect("syntax has tokens"), tokens.last().expect("as above"));
+        self.diagnostics.report_range(first.span(), last.span(), message);
+        None
+    }
+
+    fn field(&mut self, field: &syn::ExprField) -> Option<ExprId> {
+        let member = field.member.to_token_stream().to_string();
+        if matches!(&*field.base, syn::Expr::Path(base) if base.path.is_ident("self")) {
+            return self.mistake_over(field, format!("a field is named directly, write `{member}`"));
+        }
+        self.value(&field.base);
+        if is_function(&member) {
+            return self
+                .mistake(field.member.span(), format!("`.{member}` is a function, write `.{member}(..)`"));
+        }
+        self.mistake(field.member.span(), "a number has no fields")
     }
 
     fn literal(&mut self, literal: &syn::Lit) -> Option<ExprId> {
@@ -147,6 +186,7 @@ impl<R: Resolver> Lowering<'_, R> {
             Resolved::Unknown if is_screaming_case(name) => {
                 Some(self.resolver.constant(self.graph, quote::ToTokens::to_token_stream(path)))
             }
+            Resolved::Unknown if name == "der" => self.mistake(name.span(), DER_TAKES_ONE),
             Resolved::Unknown => {
                 self.resolver.report_unknown(name, self.diagnostics);
                 None
@@ -157,31 +197,42 @@ impl<R: Resolver> Lowering<'_, R> {
     fn unary(&mut self, unary: &syn::ExprUnary) -> Option<ExprId> {
         match unary.op {
             syn::UnOp::Neg(_) => self.value(&unary.expr).map(|operand| self.graph.neg(operand)),
-            // `x ** 2` parses as `x * (*2)`.
-            syn::UnOp::Deref(star) => {
-                self.mistake(star.span(), "`**` is not a power in Rust, write `.powi(2)`")
+            _ => {
+                self.value(&unary.expr);
+                self.mistake_over(&unary.op, "this operator has no meaning for real numbers")
             }
-            _ => self.mistake(unary.op.span(), "this operator has no meaning for real numbers"),
         }
     }
 
     fn binary(&mut self, binary: &syn::ExprBinary) -> Option<ExprId> {
+        // `x ** 2` parses as `x * (*2)`.
+        if let (
+            syn::BinOp::Mul(first),
+            syn::Expr::Unary(syn::ExprUnary { op: syn::UnOp::Deref(second), expr, .. }),
+        ) = (binary.op, &*binary.right)
+        {
+            self.value(&binary.left);
+            self.value(expr);
+            self.diagnostics.report_range(first.span, second.span, power_message("**", expr));
+            return None;
+        }
         // Both operands first, so that the mistakes of both are reported.
         let (first, second) = (self.value(&binary.left), self.value(&binary.right));
         let operator = match binary.op {
             syn::BinOp::Add(_) => Binary::Add,
             syn::BinOp::Sub(_) => Binary::Sub,
             syn::BinOp::Mul(_) => Binary::Mul,
-            syn::BinOp::Div(slash) if is_integer(&binary.left) && is_integer(&binary.right) => {
-                return self.mistake(slash.span(), integer_division_message(&binary.left, &binary.right));
+            syn::BinOp::Div(_) if is_integer(&binary.left) && is_integer(&binary.right) => {
+                let message = integer_division_message(&binary.left, &binary.right);
+                return self.mistake_over(binary, message);
             }
             syn::BinOp::Div(_) => Binary::Div,
             syn::BinOp::BitXor(caret) => {
-                return self.mistake(caret.span(), "`^` is not a power in Rust, write `.powi(2)`");
+                return self.mistake(caret.span, power_message("^", &binary.right));
             }
             other => {
                 return self
-                    .mistake(other.span(), "this operator has no meaning in an equation: use `+ - * /`");
+                    .mistake_over(&other, "this operator has no meaning in an equation: use `+ - * /`");
             }
         };
         Some(self.graph.binary(operator, first?, second?))
@@ -194,8 +245,8 @@ impl<R: Resolver> Lowering<'_, R> {
         match (method.as_str(), arguments.as_slice()) {
             ("powi", [exponent]) => match integer_literal(exponent) {
                 Some(exponent) => receiver.map(|base| self.graph.power(base, exponent)),
-                None => self.mistake(
-                    exponent.span(),
+                None => self.mistake_over(
+                    exponent,
                     "`.powi` takes an integer literal; for other exponents write `.powf(..)`",
                 ),
             },
@@ -213,14 +264,20 @@ impl<R: Resolver> Lowering<'_, R> {
             (_, arguments) => match (Unary::from_method(&method), arguments) {
                 (Some(function), []) => receiver.map(|operand| self.graph.unary(function, operand)),
                 (Some(_), [extra, ..]) => {
-                    self.mistake(extra.span(), format!("`.{method}()` takes no argument"))
+                    self.mistake_over(extra, format!("`.{method}()` takes no argument"))
+                }
+                (None, _) if is_function_of_vectors(&method) => {
+                    receiver?;
+                    self.mistake(
+                        call.method.span(),
+                        format!("`.{method}` is a function of vectors: coordinates are scalars"),
+                    )
                 }
                 (None, _) => {
-                    let known = || Unary::methods().chain(["powi", "powf", "atan2"]);
-                    let list: Vec<&str> = known().collect();
-                    let similar = suggestion(&method, known());
+                    let known: Vec<&str> = functions().collect();
+                    let similar = suggestion(&method, functions());
                     let message =
-                        format!("unknown function `{method}`{similar}\nfunctions: {}", list.join(", "));
+                        format!("unknown function `{method}`{similar}\nfunctions: {}", known.join(", "));
                     self.mistake(call.method.span(), message)
                 }
             },
@@ -229,21 +286,30 @@ impl<R: Resolver> Lowering<'_, R> {
 
     fn call(&mut self, call: &syn::ExprCall) -> Option<ExprId> {
         let function = match &*call.func {
-            syn::Expr::Path(path) => path.path.get_ident().cloned(),
+            syn::Expr::Path(path) => path.path.segments.last().map(|segment| &segment.ident),
             _ => None,
         };
         let arguments: Vec<&syn::Expr> = call.args.iter().collect();
         match (function, arguments.as_slice()) {
             (Some(der), [argument]) if der == "der" => self.derivative(der.span(), argument),
-            (Some(der), _) if der == "der" => {
-                self.mistake(der.span(), "`der` takes one coordinate: `der(x)`")
-            }
-            (Some(name), [_, ..]) if Unary::from_method(&name.to_string()).is_some() => {
-                let message = format!("functions are methods in Rust: write `(..).{name}()`");
-                self.mistake(name.span(), message)
+            (Some(der), _) if der == "der" => self.mistake(der.span(), DER_TAKES_ONE),
+            (Some(name), [receiver, others @ ..]) if name == "pow" || is_function(&name.to_string()) => {
+                for argument in &arguments {
+                    self.value(argument);
+                }
+                let receiver = match receiver {
+                    syn::Expr::Path(_) | syn::Expr::Call(_) => receiver.to_token_stream().to_string(),
+                    _ => "(..)".to_owned(),
+                };
+                let name = if name == "pow" { "powi".to_owned() } else { name.to_string() };
+                let others = if others.is_empty() { "" } else { ".." };
+                self.mistake_over(
+                    &call.func,
+                    format!("functions are methods in Rust, write `{receiver}.{name}({others})`"),
+                )
             }
             _ => self
-                .mistake(call.func.span(), "the only function that can be called here is `der(coordinate)`"),
+                .mistake_over(&call.func, "the only function that can be called here is `der(coordinate)`"),
         }
     }
 
@@ -254,10 +320,14 @@ impl<R: Resolver> Lowering<'_, R> {
                 self.resolver.velocity(self.graph, der, name, self.diagnostics)
             }
             syn::Expr::Paren(inner) => self.derivative(der, &inner.expr),
+            syn::Expr::Index(index) => {
+                self.derivative(der, &index.expr)?;
+                self.mistake_over(index, "nothing here has an index: coordinates are scalars")
+            }
             syn::Expr::Call(_) => {
                 self.mistake(der, "a Lagrangian depends on positions and velocities: no second derivatives")
             }
-            other => self.mistake(other.span(), "`der` takes a coordinate by its name: `der(x)`"),
+            other => self.mistake_over(other, "`der` takes a coordinate by its name: `der(x)`"),
         }
     }
 
@@ -269,8 +339,8 @@ impl<R: Resolver> Lowering<'_, R> {
                 syn::Stmt::Local(local) => self.local(local),
                 syn::Stmt::Expr(last, None) if k + 1 == block.stmts.len() => value = self.value(last),
                 other => {
-                    self.mistake(
-                        other.span(),
+                    self.mistake_over(
+                        other,
                         "a block holds `let name = expression;` and ends with an expression",
                     );
                 }
@@ -291,7 +361,11 @@ impl<R: Resolver> Lowering<'_, R> {
                 name.ident.clone()
             }
             other => {
-                self.mistake(other.span(), "write `let name = expression;`");
+                self.mistake_over(other, "write `let name = expression;`");
+                // What it binds is known, if not its value.
+                for name in identifiers(other.to_token_stream()) {
+                    self.resolver.define(&name, None, self.diagnostics);
+                }
                 return;
             }
         };
@@ -299,45 +373,37 @@ impl<R: Resolver> Lowering<'_, R> {
             Some(init) if init.diverge.is_none() => self.value(&init.expr),
             _ => self.mistake(name.span(), "write `let name = expression;`"),
         };
-        self.resolver.define(&name, value);
+        self.resolver.define(&name, value, self.diagnostics);
     }
+}
+
+/// For every wrong number of arguments, none included.
+const DER_TAKES_ONE: &str = "`der` takes one coordinate: `der(x)`";
+
+/// The functions of the attribute grammar.
+fn functions() -> impl Iterator<Item = &'static str> {
+    Unary::methods().chain(["powi", "powf", "atan2"])
+}
+
+fn is_function(name: &str) -> bool {
+    functions().any(|function| function == name)
+}
+
+fn is_function_of_vectors(name: &str) -> bool {
+    matches!(name, "dot" | "cross" | "norm" | "norm_squared")
+}
+
+fn identifiers(tokens: TokenStream) -> Vec<Ident> {
+    let inside = |token| match token {
+        TokenTree::Ident(name) => vec![name],
+        TokenTree::Group(group) => identifiers(group.stream()),
+        TokenTree::Punct(_) | TokenTree::Literal(_) => Vec::new(),
+    };
+    tokens.into_iter().flat_map(inside).collect()
 }
 
 /// Rust's convention for constants.
 fn is_screaming_case(name: &Ident) -> bool {
     let name = name.to_string();
     name.chars().any(char::is_alphabetic) && !name.chars().any(char::is_lowercase)
-}
-
-fn integer_literal(expression: &syn::Expr) -> Option<i32> {
-    match expression {
-        syn::Expr::Lit(syn::ExprLit { lit: syn::Lit::Int(integer), .. }) => integer.base10_parse().ok(),
-        syn::Expr::Unary(syn::ExprUnary { op: syn::UnOp::Neg(_), expr, .. }) => {
-            integer_literal(expr).map(|magnitude| -magnitude)
-        }
-        syn::Expr::Paren(inner) => integer_literal(&inner.expr),
-        _ => None,
-    }
-}
-
-/// Whether Rust would compute an expression in integers.
-fn is_integer(expression: &syn::Expr) -> bool {
-    match expression {
-        syn::Expr::Lit(literal) => {
-            matches!(&literal.lit, syn::Lit::Int(integer) if integer.suffix() != "f64")
-        }
-        syn::Expr::Paren(inner) => is_integer(&inner.expr),
-        syn::Expr::Unary(unary) => is_integer(&unary.expr),
-        syn::Expr::Binary(binary) => is_integer(&binary.left) && is_integer(&binary.right),
-        _ => false,
-    }
-}
-
-fn integer_division_message(dividend: &syn::Expr, divisor: &syn::Expr) -> String {
-    match (integer_literal(dividend), integer_literal(divisor)) {
-        (Some(a), Some(b)) if b != 0 => {
-            format!("`{a}/{b}` is {} in Rust, write `{a}.0/{b}.0`", a / b)
-        }
-        _ => "a quotient of integers is an integer in Rust, write `1.0/2.0`".to_owned(),
-    }
 }

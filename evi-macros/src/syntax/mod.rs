@@ -1,10 +1,13 @@
 //! From tokens to items: the only folder that reads `syn`.
 //!
-//! In: the tokens of a struct. Out: a [`Declaration`] of fields and items with names unresolved. Every item is parsed by
-//! itself, so that the mistakes of all of them are found at once.
+//! In: the tokens of a struct. Out: a [`Declaration`] of fields and items with names unresolved. Every item
+//! is parsed by itself, so that the mistakes of all of them are found at once.
 
 mod attribute;
 mod expression;
+mod integers;
+mod item;
 
-pub(crate) use attribute::{Constraint, Declaration, Field, Item, Let, NotAnItem, parse};
+pub(crate) use attribute::{Declaration, Field, NotAnItem, parse};
 pub(crate) use expression::{Expression, Resolved, Resolver, lower};
+pub(crate) use item::{Constraint, Coordinates, Item, Let};
