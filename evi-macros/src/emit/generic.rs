@@ -38,7 +38,11 @@ pub(super) fn generic_system(declaration: &Declaration, model: &Model) -> TokenS
     };
     let (all_lets, position_lets) = (lets(true), lets(false));
     let lagrangian = match &model.source.lagrangian {
-        LagrangianSource::Whole(lagrangian) => rewriter.expression(lagrangian),
+        LagrangianSource::Whole(lagrangian) => {
+            let lagrangian = rewriter.expression(lagrangian);
+            // In parentheses: where a statement may stand, `{ .. } + x` would end behind the block.
+            quote!((#lagrangian))
+        }
         LagrangianSource::Difference { kinetic, potential } => {
             let (kinetic, potential) = (rewriter.expression(kinetic), rewriter.expression(potential));
             quote!((#kinetic) - (#potential))

@@ -6,8 +6,9 @@ use quote::{format_ident, quote};
 use crate::expr::{Binary, ExprId, Graph, Node, Symbol, Unary};
 use crate::schedule::{ConstantSlots, Place, Program, Statement};
 
-/// Scopes per function: together with the scopes' length it keeps functions below 5,000 statements.
-const SCOPES_PER_FUNCTION: usize = 20;
+/// Scopes per function: a scope has at most 200 `let`s and hands on at most 400 values (a sine with its cosine names
+/// two), so that functions stay below 5,000 statements.
+const SCOPES_PER_FUNCTION: usize = 8;
 
 /// Writes programs over the inputs that are in scope where they are emitted.
 pub(super) struct Writer<'a> {

@@ -77,19 +77,21 @@ fn sum(graph: &mut Graph, a: ExprId, b: ExprId) -> ExprId {
             let sum = graph.add(a, b);
             graph.neg(sum)
         }
-        (Some(a), None) => graph.sub(b, a),
-        (None, Some(b)) => graph.sub(a, b),
+        (Some(a), None) => subtracted(graph, b, a),
+        (None, Some(b)) => subtracted(graph, a, b),
         (None, None) => graph.add(a, b),
     }
 }
 
 fn difference(graph: &mut Graph, a: ExprId, b: ExprId) -> ExprId {
-    if a == b {
-        return graph.number(0.0);
-    }
     let minus_one = graph.number(-1.0);
     let negative = product(graph, minus_one, b);
     sum(graph, a, negative)
+}
+
+/// `a − b`, where neither is negated.
+fn subtracted(graph: &mut Graph, a: ExprId, b: ExprId) -> ExprId {
+    if a == b { graph.number(0.0) } else { graph.sub(a, b) }
 }
 
 /// `x` where the node is `−x`.

@@ -1,0 +1,312 @@
+// operations               + -   *   / f()
+// constants                  0   6   0   0
+// lagrangian                 5   9   0   0
+// lagrangian_gradient        0   4   0   0
+// lagrangian_derivatives     0   4   0   0
+// constraints                6   4   0   0
+// constraint_derivatives     6   8   0   0
+// constraint_curvature       4   8   0   0
+
+const _: () = {
+    #[automatically_derived]
+    #[allow(unused_variables, unused_parens, clippy::all)]
+    impl ::evi_core::__private::MechanicalSystem for DoublePendulum {
+        const COORDINATES: &'static [&'static str] = &["x1", "y1", "x2", "y2"];
+        const CONSTRAINTS: &'static [&'static str] = &["rod1", "rod2"];
+        const PARAMETERS: &'static [&'static str] = &["m1", "m2", "l1", "l2", "g"];
+        const STRUCTURE: ::evi_core::__private::Structure = ::evi_core::__private::Structure {
+            hessian: ::evi_core::__private::HessianPattern {
+                qq: &[],
+                vq: &[],
+                vv: &[
+                    ::evi_core::__private::Entry {
+                        row: 0usize,
+                        col: 0usize,
+                        value: ::evi_core::__private::EntryValue::Constant(0usize),
+                    },
+                    ::evi_core::__private::Entry {
+                        row: 1usize,
+                        col: 1usize,
+                        value: ::evi_core::__private::EntryValue::Constant(0usize),
+                    },
+                    ::evi_core::__private::Entry {
+                        row: 2usize,
+                        col: 2usize,
+                        value: ::evi_core::__private::EntryValue::Constant(1usize),
+                    },
+                    ::evi_core::__private::Entry {
+                        row: 3usize,
+                        col: 3usize,
+                        value: ::evi_core::__private::EntryValue::Constant(1usize),
+                    },
+                ],
+                vt: &[],
+            },
+            jacobian: ::evi_core::__private::JacobianPattern {
+                q: &[
+                    ::evi_core::__private::Entry {
+                        row: 0usize,
+                        col: 0usize,
+                        value: ::evi_core::__private::EntryValue::Varying(0usize),
+                    },
+                    ::evi_core::__private::Entry {
+                        row: 0usize,
+                        col: 1usize,
+                        value: ::evi_core::__private::EntryValue::Varying(1usize),
+                    },
+                    ::evi_core::__private::Entry {
+                        row: 1usize,
+                        col: 0usize,
+                        value: ::evi_core::__private::EntryValue::Varying(2usize),
+                    },
+                    ::evi_core::__private::Entry {
+                        row: 1usize,
+                        col: 1usize,
+                        value: ::evi_core::__private::EntryValue::Varying(3usize),
+                    },
+                    ::evi_core::__private::Entry {
+                        row: 1usize,
+                        col: 2usize,
+                        value: ::evi_core::__private::EntryValue::Varying(4usize),
+                    },
+                    ::evi_core::__private::Entry {
+                        row: 1usize,
+                        col: 3usize,
+                        value: ::evi_core::__private::EntryValue::Varying(5usize),
+                    },
+                ],
+                t: &[],
+            },
+            mass: ::evi_core::__private::Dependence {
+                on_q: false,
+                on_v: false,
+                on_t: false,
+            },
+            lagrangian: ::evi_core::__private::Dependence {
+                on_q: true,
+                on_v: true,
+                on_t: false,
+            },
+            constraints: ::evi_core::__private::Dependence {
+                on_q: true,
+                on_v: false,
+                on_t: false,
+            },
+            operations: ::evi_core::__private::KernelOperations {
+                constants: ::evi_core::__private::Operations {
+                    additions: 0usize,
+                    multiplications: 6usize,
+                    divisions: 0usize,
+                    functions: 0usize,
+                },
+                lagrangian: ::evi_core::__private::Operations {
+                    additions: 5usize,
+                    multiplications: 9usize,
+                    divisions: 0usize,
+                    functions: 0usize,
+                },
+                lagrangian_gradient: ::evi_core::__private::Operations {
+                    additions: 0usize,
+                    multiplications: 4usize,
+                    divisions: 0usize,
+                    functions: 0usize,
+                },
+                lagrangian_derivatives: ::evi_core::__private::Operations {
+                    additions: 0usize,
+                    multiplications: 4usize,
+                    divisions: 0usize,
+                    functions: 0usize,
+                },
+                constraints: ::evi_core::__private::Operations {
+                    additions: 6usize,
+                    multiplications: 4usize,
+                    divisions: 0usize,
+                    functions: 0usize,
+                },
+                constraint_derivatives: ::evi_core::__private::Operations {
+                    additions: 6usize,
+                    multiplications: 8usize,
+                    divisions: 0usize,
+                    functions: 0usize,
+                },
+                constraint_curvature: ::evi_core::__private::Operations {
+                    additions: 4usize,
+                    multiplications: 8usize,
+                    divisions: 0usize,
+                    functions: 0usize,
+                },
+            },
+        };
+        type PerCoordinate<X: ::core::clone::Clone> = [X; 4usize];
+        type PerConstraint<X: ::core::clone::Clone> = [X; 2usize];
+        type PerUnknown<X: ::core::clone::Clone> = [X; 6usize];
+        type PerParameter<X: ::core::clone::Clone> = [X; 5usize];
+        type PerConstant<X: ::core::clone::Clone> = [X; 9usize];
+        type PerHessianEntry<X: ::core::clone::Clone> = [X; 0usize];
+        type PerJacobianEntry<X: ::core::clone::Clone> = [X; 6usize];
+        type KktFactors = ::evi_core::__private::DenseLu<6usize>;
+        type MassFactors = ::evi_core::__private::DenseLu<4usize>;
+        type GramFactors = ::evi_core::__private::DenseLu<2usize>;
+        #[inline]
+        fn parameters(&self) -> Self::PerParameter<f64> {
+            [self.m1, self.m2, self.l1, self.l2, self.g]
+        }
+        #[inline]
+        fn constants<T: ::evi_core::__private::Scalar>(
+            p: &Self::PerParameter<T>,
+        ) -> Self::PerConstant<T> {
+            let x0 = T::from_f64(0.5) * p[0usize];
+            let x1 = T::from_f64(0.5) * p[1usize];
+            let x2 = -(p[0usize] * p[4usize]);
+            let x3 = -(p[1usize] * p[4usize]);
+            let x4 = p[2usize] * p[2usize];
+            let x5 = p[3usize] * p[3usize];
+            [p[0usize], p[1usize], x0, x1, p[4usize], x2, x3, x4, x5]
+        }
+        #[inline]
+        fn lagrangian<T: ::evi_core::__private::Scalar>(
+            c: &Self::PerConstant<T>,
+            t: T,
+            q: &Self::PerCoordinate<T>,
+            v: &Self::PerCoordinate<T>,
+        ) -> T {
+            let x0 = ((c[2usize] * ((v[0usize] * v[0usize]) + (v[1usize] * v[1usize])))
+                + (c[3usize] * ((v[2usize] * v[2usize]) + (v[3usize] * v[3usize]))))
+                - (c[4usize] * ((c[0usize] * q[1usize]) + (c[1usize] * q[3usize])));
+            x0
+        }
+        #[inline]
+        fn lagrangian_gradient<T: ::evi_core::__private::Scalar>(
+            c: &Self::PerConstant<T>,
+            t: T,
+            q: &Self::PerCoordinate<T>,
+            v: &Self::PerCoordinate<T>,
+        ) -> ::evi_core::__private::LagrangianGradient<Self, T> {
+            let x0 = c[0usize] * v[0usize];
+            let x1 = c[0usize] * v[1usize];
+            let x2 = c[1usize] * v[2usize];
+            let x3 = c[1usize] * v[3usize];
+            ::evi_core::__private::LagrangianGradient {
+                force: [T::from_f64(0.0), c[5usize], T::from_f64(0.0), c[6usize]],
+                momentum: [x0, x1, x2, x3],
+            }
+        }
+        #[inline]
+        fn lagrangian_derivatives<T: ::evi_core::__private::Scalar>(
+            c: &Self::PerConstant<T>,
+            t: T,
+            q: &Self::PerCoordinate<T>,
+            v: &Self::PerCoordinate<T>,
+        ) -> (
+            ::evi_core::__private::LagrangianGradient<Self, T>,
+            Self::PerHessianEntry<T>,
+        ) {
+            let x0 = c[0usize] * v[0usize];
+            let x1 = c[0usize] * v[1usize];
+            let x2 = c[1usize] * v[2usize];
+            let x3 = c[1usize] * v[3usize];
+            (
+                ::evi_core::__private::LagrangianGradient {
+                    force: [T::from_f64(0.0), c[5usize], T::from_f64(0.0), c[6usize]],
+                    momentum: [x0, x1, x2, x3],
+                },
+                [],
+            )
+        }
+        #[inline]
+        fn constraints<T: ::evi_core::__private::Scalar>(
+            c: &Self::PerConstant<T>,
+            t: T,
+            q: &Self::PerCoordinate<T>,
+        ) -> Self::PerConstraint<T> {
+            let x0 = q[2usize] - q[0usize];
+            let x1 = q[3usize] - q[1usize];
+            let x2 = ((q[0usize] * q[0usize]) + (q[1usize] * q[1usize])) - c[7usize];
+            let x3 = ((x0 * x0) + (x1 * x1)) - c[8usize];
+            [x2, x3]
+        }
+        #[inline]
+        fn constraint_derivatives<T: ::evi_core::__private::Scalar>(
+            c: &Self::PerConstant<T>,
+            t: T,
+            q: &Self::PerCoordinate<T>,
+        ) -> (Self::PerConstraint<T>, Self::PerJacobianEntry<T>) {
+            let x0 = q[2usize] - q[0usize];
+            let x1 = q[3usize] - q[1usize];
+            let x2 = ((q[0usize] * q[0usize]) + (q[1usize] * q[1usize])) - c[7usize];
+            let x3 = ((x0 * x0) + (x1 * x1)) - c[8usize];
+            let x4 = q[0usize] * T::from_f64(2.0);
+            let x5 = q[1usize] * T::from_f64(2.0);
+            let x6 = x0 * T::from_f64(2.0);
+            let x7 = -x6;
+            let x8 = x1 * T::from_f64(2.0);
+            let x9 = -x8;
+            ([x2, x3], [x4, x5, x7, x9, x6, x8])
+        }
+        #[inline]
+        fn constraint_curvature<T: ::evi_core::__private::Scalar>(
+            c: &Self::PerConstant<T>,
+            t: T,
+            q: &Self::PerCoordinate<T>,
+            v: &Self::PerCoordinate<T>,
+        ) -> Self::PerConstraint<T> {
+            let x0 = ((v[0usize] * v[0usize]) * T::from_f64(2.0))
+                + ((v[1usize] * v[1usize]) * T::from_f64(2.0));
+            let x1 = v[2usize] - v[0usize];
+            let x2 = v[3usize] - v[1usize];
+            let x3 = (T::from_f64(2.0) * (x1 * x1)) + (T::from_f64(2.0) * (x2 * x2));
+            [x0, x3]
+        }
+    }
+    #[automatically_derived]
+    #[allow(unused, non_snake_case, clippy::all)]
+    impl ::evi_core::__private::GenericSystem for DoublePendulum {
+        fn n_coordinates(&self) -> usize {
+            4usize
+        }
+        fn n_constraints(&self) -> usize {
+            2usize
+        }
+        fn lagrangian<T: ::evi_core::__private::Scalar>(
+            &self,
+            t: T,
+            __q: &[T],
+            __v: &[T],
+        ) -> T {
+            let m1 = T::from_f64(self.m1);
+            let m2 = T::from_f64(self.m2);
+            let l1 = T::from_f64(self.l1);
+            let l2 = T::from_f64(self.l2);
+            let g = T::from_f64(self.g);
+            let x1 = __q[0usize];
+            let y1 = __q[1usize];
+            let x2 = __q[2usize];
+            let y2 = __q[3usize];
+            let __der_x1 = __v[0usize];
+            let __der_y1 = __v[1usize];
+            let __der_x2 = __v[2usize];
+            let __der_y2 = __v[3usize];
+            (T::from_f64(0.5 as f64) * m1 * (__der_x1.powi(2) + __der_y1.powi(2))
+                + T::from_f64(0.5 as f64) * m2 * (__der_x2.powi(2) + __der_y2.powi(2)))
+                - (g * (m1 * y1 + m2 * y2))
+        }
+        fn constraints<T: ::evi_core::__private::Scalar>(
+            &self,
+            t: T,
+            __q: &[T],
+            __residuals: &mut [T],
+        ) {
+            let m1 = T::from_f64(self.m1);
+            let m2 = T::from_f64(self.m2);
+            let l1 = T::from_f64(self.l1);
+            let l2 = T::from_f64(self.l2);
+            let g = T::from_f64(self.g);
+            let x1 = __q[0usize];
+            let y1 = __q[1usize];
+            let x2 = __q[2usize];
+            let y2 = __q[3usize];
+            __residuals[0usize] = (x1.powi(2) + y1.powi(2)) - (l1.powi(2));
+            __residuals[1usize] = ((x2 - x1).powi(2) + (y2 - y1).powi(2)) - (l2.powi(2));
+        }
+    }
+};

@@ -1,0 +1,227 @@
+// operations               + -   *   / f()
+// constants                  0   2   0   0
+// lagrangian                 1   4   0   0
+// lagrangian_gradient        0   2   0   0
+// lagrangian_derivatives     0   2   0   0
+// constraints                0   0   0   0
+// constraint_derivatives     0   0   0   0
+// constraint_curvature       0   0   0   0
+
+const _: () = {
+    #[automatically_derived]
+    #[allow(unused_variables, unused_parens, clippy::all)]
+    impl ::evi_core::__private::MechanicalSystem for HarmonicOscillator {
+        const COORDINATES: &'static [&'static str] = &["x"];
+        const CONSTRAINTS: &'static [&'static str] = &[];
+        const PARAMETERS: &'static [&'static str] = &["m", "k"];
+        const STRUCTURE: ::evi_core::__private::Structure = ::evi_core::__private::Structure {
+            hessian: ::evi_core::__private::HessianPattern {
+                qq: &[
+                    ::evi_core::__private::Entry {
+                        row: 0usize,
+                        col: 0usize,
+                        value: ::evi_core::__private::EntryValue::Constant(0usize),
+                    },
+                ],
+                vq: &[],
+                vv: &[
+                    ::evi_core::__private::Entry {
+                        row: 0usize,
+                        col: 0usize,
+                        value: ::evi_core::__private::EntryValue::Constant(1usize),
+                    },
+                ],
+                vt: &[],
+            },
+            jacobian: ::evi_core::__private::JacobianPattern {
+                q: &[],
+                t: &[],
+            },
+            mass: ::evi_core::__private::Dependence {
+                on_q: false,
+                on_v: false,
+                on_t: false,
+            },
+            lagrangian: ::evi_core::__private::Dependence {
+                on_q: true,
+                on_v: true,
+                on_t: false,
+            },
+            constraints: ::evi_core::__private::Dependence {
+                on_q: false,
+                on_v: false,
+                on_t: false,
+            },
+            operations: ::evi_core::__private::KernelOperations {
+                constants: ::evi_core::__private::Operations {
+                    additions: 0usize,
+                    multiplications: 2usize,
+                    divisions: 0usize,
+                    functions: 0usize,
+                },
+                lagrangian: ::evi_core::__private::Operations {
+                    additions: 1usize,
+                    multiplications: 4usize,
+                    divisions: 0usize,
+                    functions: 0usize,
+                },
+                lagrangian_gradient: ::evi_core::__private::Operations {
+                    additions: 0usize,
+                    multiplications: 2usize,
+                    divisions: 0usize,
+                    functions: 0usize,
+                },
+                lagrangian_derivatives: ::evi_core::__private::Operations {
+                    additions: 0usize,
+                    multiplications: 2usize,
+                    divisions: 0usize,
+                    functions: 0usize,
+                },
+                constraints: ::evi_core::__private::Operations {
+                    additions: 0usize,
+                    multiplications: 0usize,
+                    divisions: 0usize,
+                    functions: 0usize,
+                },
+                constraint_derivatives: ::evi_core::__private::Operations {
+                    additions: 0usize,
+                    multiplications: 0usize,
+                    divisions: 0usize,
+                    functions: 0usize,
+                },
+                constraint_curvature: ::evi_core::__private::Operations {
+                    additions: 0usize,
+                    multiplications: 0usize,
+                    divisions: 0usize,
+                    functions: 0usize,
+                },
+            },
+        };
+        type PerCoordinate<X: ::core::clone::Clone> = [X; 1usize];
+        type PerConstraint<X: ::core::clone::Clone> = [X; 0usize];
+        type PerUnknown<X: ::core::clone::Clone> = [X; 1usize];
+        type PerParameter<X: ::core::clone::Clone> = [X; 2usize];
+        type PerConstant<X: ::core::clone::Clone> = [X; 5usize];
+        type PerHessianEntry<X: ::core::clone::Clone> = [X; 0usize];
+        type PerJacobianEntry<X: ::core::clone::Clone> = [X; 0usize];
+        type KktFactors = ::evi_core::__private::DenseLu<1usize>;
+        type MassFactors = ::evi_core::__private::DenseLu<1usize>;
+        type GramFactors = ::evi_core::__private::DenseLu<0usize>;
+        #[inline]
+        fn parameters(&self) -> Self::PerParameter<f64> {
+            [self.m, self.k]
+        }
+        #[inline]
+        fn constants<T: ::evi_core::__private::Scalar>(
+            p: &Self::PerParameter<T>,
+        ) -> Self::PerConstant<T> {
+            let x0 = T::from_f64(0.5) * p[0usize];
+            let x1 = T::from_f64(0.5) * p[1usize];
+            let x2 = -p[1usize];
+            [x2, p[0usize], x0, x1, p[1usize]]
+        }
+        #[inline]
+        fn lagrangian<T: ::evi_core::__private::Scalar>(
+            c: &Self::PerConstant<T>,
+            t: T,
+            q: &Self::PerCoordinate<T>,
+            v: &Self::PerCoordinate<T>,
+        ) -> T {
+            let x0 = (c[2usize] * (v[0usize] * v[0usize]))
+                - (c[3usize] * (q[0usize] * q[0usize]));
+            x0
+        }
+        #[inline]
+        fn lagrangian_gradient<T: ::evi_core::__private::Scalar>(
+            c: &Self::PerConstant<T>,
+            t: T,
+            q: &Self::PerCoordinate<T>,
+            v: &Self::PerCoordinate<T>,
+        ) -> ::evi_core::__private::LagrangianGradient<Self, T> {
+            let x0 = -(c[4usize] * q[0usize]);
+            let x1 = c[1usize] * v[0usize];
+            ::evi_core::__private::LagrangianGradient {
+                force: [x0],
+                momentum: [x1],
+            }
+        }
+        #[inline]
+        fn lagrangian_derivatives<T: ::evi_core::__private::Scalar>(
+            c: &Self::PerConstant<T>,
+            t: T,
+            q: &Self::PerCoordinate<T>,
+            v: &Self::PerCoordinate<T>,
+        ) -> (
+            ::evi_core::__private::LagrangianGradient<Self, T>,
+            Self::PerHessianEntry<T>,
+        ) {
+            let x0 = -(c[4usize] * q[0usize]);
+            let x1 = c[1usize] * v[0usize];
+            (
+                ::evi_core::__private::LagrangianGradient {
+                    force: [x0],
+                    momentum: [x1],
+                },
+                [],
+            )
+        }
+        #[inline]
+        fn constraints<T: ::evi_core::__private::Scalar>(
+            c: &Self::PerConstant<T>,
+            t: T,
+            q: &Self::PerCoordinate<T>,
+        ) -> Self::PerConstraint<T> {
+            []
+        }
+        #[inline]
+        fn constraint_derivatives<T: ::evi_core::__private::Scalar>(
+            c: &Self::PerConstant<T>,
+            t: T,
+            q: &Self::PerCoordinate<T>,
+        ) -> (Self::PerConstraint<T>, Self::PerJacobianEntry<T>) {
+            ([], [])
+        }
+        #[inline]
+        fn constraint_curvature<T: ::evi_core::__private::Scalar>(
+            c: &Self::PerConstant<T>,
+            t: T,
+            q: &Self::PerCoordinate<T>,
+            v: &Self::PerCoordinate<T>,
+        ) -> Self::PerConstraint<T> {
+            []
+        }
+    }
+    #[automatically_derived]
+    #[allow(unused, non_snake_case, clippy::all)]
+    impl ::evi_core::__private::GenericSystem for HarmonicOscillator {
+        fn n_coordinates(&self) -> usize {
+            1usize
+        }
+        fn n_constraints(&self) -> usize {
+            0usize
+        }
+        fn lagrangian<T: ::evi_core::__private::Scalar>(
+            &self,
+            t: T,
+            __q: &[T],
+            __v: &[T],
+        ) -> T {
+            let m = T::from_f64(self.m);
+            let k = T::from_f64(self.k);
+            let x = __q[0usize];
+            let __der_x = __v[0usize];
+            (T::from_f64(0.5 as f64) * m * __der_x.powi(2))
+                - (T::from_f64(0.5 as f64) * k * x.powi(2))
+        }
+        fn constraints<T: ::evi_core::__private::Scalar>(
+            &self,
+            t: T,
+            __q: &[T],
+            __residuals: &mut [T],
+        ) {
+            let m = T::from_f64(self.m);
+            let k = T::from_f64(self.k);
+            let x = __q[0usize];
+        }
+    }
+};

@@ -1,0 +1,270 @@
+// operations               + -   *   / f()
+// constants                  0   3   0   0
+// lagrangian                 3   5   0   0
+// lagrangian_gradient        0   3   0   0
+// lagrangian_derivatives     0   3   0   0
+// constraints                3   3   0   0
+// constraint_derivatives     3   6   0   0
+// constraint_curvature       2   6   0   0
+
+const _: () = {
+    #[automatically_derived]
+    #[allow(unused_variables, unused_parens, clippy::all)]
+    impl ::evi_core::__private::MechanicalSystem for SphericalPendulum {
+        const COORDINATES: &'static [&'static str] = &["x", "y", "z"];
+        const CONSTRAINTS: &'static [&'static str] = &["rod"];
+        const PARAMETERS: &'static [&'static str] = &["m", "l", "g"];
+        const STRUCTURE: ::evi_core::__private::Structure = ::evi_core::__private::Structure {
+            hessian: ::evi_core::__private::HessianPattern {
+                qq: &[],
+                vq: &[],
+                vv: &[
+                    ::evi_core::__private::Entry {
+                        row: 0usize,
+                        col: 0usize,
+                        value: ::evi_core::__private::EntryValue::Constant(0usize),
+                    },
+                    ::evi_core::__private::Entry {
+                        row: 1usize,
+                        col: 1usize,
+                        value: ::evi_core::__private::EntryValue::Constant(0usize),
+                    },
+                    ::evi_core::__private::Entry {
+                        row: 2usize,
+                        col: 2usize,
+                        value: ::evi_core::__private::EntryValue::Constant(0usize),
+                    },
+                ],
+                vt: &[],
+            },
+            jacobian: ::evi_core::__private::JacobianPattern {
+                q: &[
+                    ::evi_core::__private::Entry {
+                        row: 0usize,
+                        col: 0usize,
+                        value: ::evi_core::__private::EntryValue::Varying(0usize),
+                    },
+                    ::evi_core::__private::Entry {
+                        row: 0usize,
+                        col: 1usize,
+                        value: ::evi_core::__private::EntryValue::Varying(1usize),
+                    },
+                    ::evi_core::__private::Entry {
+                        row: 0usize,
+                        col: 2usize,
+                        value: ::evi_core::__private::EntryValue::Varying(2usize),
+                    },
+                ],
+                t: &[],
+            },
+            mass: ::evi_core::__private::Dependence {
+                on_q: false,
+                on_v: false,
+                on_t: false,
+            },
+            lagrangian: ::evi_core::__private::Dependence {
+                on_q: true,
+                on_v: true,
+                on_t: false,
+            },
+            constraints: ::evi_core::__private::Dependence {
+                on_q: true,
+                on_v: false,
+                on_t: false,
+            },
+            operations: ::evi_core::__private::KernelOperations {
+                constants: ::evi_core::__private::Operations {
+                    additions: 0usize,
+                    multiplications: 3usize,
+                    divisions: 0usize,
+                    functions: 0usize,
+                },
+                lagrangian: ::evi_core::__private::Operations {
+                    additions: 3usize,
+                    multiplications: 5usize,
+                    divisions: 0usize,
+                    functions: 0usize,
+                },
+                lagrangian_gradient: ::evi_core::__private::Operations {
+                    additions: 0usize,
+                    multiplications: 3usize,
+                    divisions: 0usize,
+                    functions: 0usize,
+                },
+                lagrangian_derivatives: ::evi_core::__private::Operations {
+                    additions: 0usize,
+                    multiplications: 3usize,
+                    divisions: 0usize,
+                    functions: 0usize,
+                },
+                constraints: ::evi_core::__private::Operations {
+                    additions: 3usize,
+                    multiplications: 3usize,
+                    divisions: 0usize,
+                    functions: 0usize,
+                },
+                constraint_derivatives: ::evi_core::__private::Operations {
+                    additions: 3usize,
+                    multiplications: 6usize,
+                    divisions: 0usize,
+                    functions: 0usize,
+                },
+                constraint_curvature: ::evi_core::__private::Operations {
+                    additions: 2usize,
+                    multiplications: 6usize,
+                    divisions: 0usize,
+                    functions: 0usize,
+                },
+            },
+        };
+        type PerCoordinate<X: ::core::clone::Clone> = [X; 3usize];
+        type PerConstraint<X: ::core::clone::Clone> = [X; 1usize];
+        type PerUnknown<X: ::core::clone::Clone> = [X; 4usize];
+        type PerParameter<X: ::core::clone::Clone> = [X; 3usize];
+        type PerConstant<X: ::core::clone::Clone> = [X; 5usize];
+        type PerHessianEntry<X: ::core::clone::Clone> = [X; 0usize];
+        type PerJacobianEntry<X: ::core::clone::Clone> = [X; 3usize];
+        type KktFactors = ::evi_core::__private::DenseLu<4usize>;
+        type MassFactors = ::evi_core::__private::DenseLu<3usize>;
+        type GramFactors = ::evi_core::__private::DenseLu<1usize>;
+        #[inline]
+        fn parameters(&self) -> Self::PerParameter<f64> {
+            [self.m, self.l, self.g]
+        }
+        #[inline]
+        fn constants<T: ::evi_core::__private::Scalar>(
+            p: &Self::PerParameter<T>,
+        ) -> Self::PerConstant<T> {
+            let x0 = T::from_f64(0.5) * p[0usize];
+            let x1 = p[0usize] * p[2usize];
+            let x2 = -x1;
+            let x3 = p[1usize] * p[1usize];
+            [p[0usize], x0, x1, x2, x3]
+        }
+        #[inline]
+        fn lagrangian<T: ::evi_core::__private::Scalar>(
+            c: &Self::PerConstant<T>,
+            t: T,
+            q: &Self::PerCoordinate<T>,
+            v: &Self::PerCoordinate<T>,
+        ) -> T {
+            let x0 = (c[1usize]
+                * (((v[0usize] * v[0usize]) + (v[1usize] * v[1usize]))
+                    + (v[2usize] * v[2usize]))) - (c[2usize] * q[2usize]);
+            x0
+        }
+        #[inline]
+        fn lagrangian_gradient<T: ::evi_core::__private::Scalar>(
+            c: &Self::PerConstant<T>,
+            t: T,
+            q: &Self::PerCoordinate<T>,
+            v: &Self::PerCoordinate<T>,
+        ) -> ::evi_core::__private::LagrangianGradient<Self, T> {
+            let x0 = c[0usize] * v[0usize];
+            let x1 = c[0usize] * v[1usize];
+            let x2 = c[0usize] * v[2usize];
+            ::evi_core::__private::LagrangianGradient {
+                force: [T::from_f64(0.0), T::from_f64(0.0), c[3usize]],
+                momentum: [x0, x1, x2],
+            }
+        }
+        #[inline]
+        fn lagrangian_derivatives<T: ::evi_core::__private::Scalar>(
+            c: &Self::PerConstant<T>,
+            t: T,
+            q: &Self::PerCoordinate<T>,
+            v: &Self::PerCoordinate<T>,
+        ) -> (
+            ::evi_core::__private::LagrangianGradient<Self, T>,
+            Self::PerHessianEntry<T>,
+        ) {
+            let x0 = c[0usize] * v[0usize];
+            let x1 = c[0usize] * v[1usize];
+            let x2 = c[0usize] * v[2usize];
+            (
+                ::evi_core::__private::LagrangianGradient {
+                    force: [T::from_f64(0.0), T::from_f64(0.0), c[3usize]],
+                    momentum: [x0, x1, x2],
+                },
+                [],
+            )
+        }
+        #[inline]
+        fn constraints<T: ::evi_core::__private::Scalar>(
+            c: &Self::PerConstant<T>,
+            t: T,
+            q: &Self::PerCoordinate<T>,
+        ) -> Self::PerConstraint<T> {
+            let x0 = (((q[0usize] * q[0usize]) + (q[1usize] * q[1usize]))
+                + (q[2usize] * q[2usize])) - c[4usize];
+            [x0]
+        }
+        #[inline]
+        fn constraint_derivatives<T: ::evi_core::__private::Scalar>(
+            c: &Self::PerConstant<T>,
+            t: T,
+            q: &Self::PerCoordinate<T>,
+        ) -> (Self::PerConstraint<T>, Self::PerJacobianEntry<T>) {
+            let x0 = (((q[0usize] * q[0usize]) + (q[1usize] * q[1usize]))
+                + (q[2usize] * q[2usize])) - c[4usize];
+            let x1 = q[0usize] * T::from_f64(2.0);
+            let x2 = q[1usize] * T::from_f64(2.0);
+            let x3 = q[2usize] * T::from_f64(2.0);
+            ([x0], [x1, x2, x3])
+        }
+        #[inline]
+        fn constraint_curvature<T: ::evi_core::__private::Scalar>(
+            c: &Self::PerConstant<T>,
+            t: T,
+            q: &Self::PerCoordinate<T>,
+            v: &Self::PerCoordinate<T>,
+        ) -> Self::PerConstraint<T> {
+            let x0 = ((v[2usize] * v[2usize]) * T::from_f64(2.0))
+                + (((v[0usize] * v[0usize]) * T::from_f64(2.0))
+                    + ((v[1usize] * v[1usize]) * T::from_f64(2.0)));
+            [x0]
+        }
+    }
+    #[automatically_derived]
+    #[allow(unused, non_snake_case, clippy::all)]
+    impl ::evi_core::__private::GenericSystem for SphericalPendulum {
+        fn n_coordinates(&self) -> usize {
+            3usize
+        }
+        fn n_constraints(&self) -> usize {
+            1usize
+        }
+        fn lagrangian<T: ::evi_core::__private::Scalar>(
+            &self,
+            t: T,
+            __q: &[T],
+            __v: &[T],
+        ) -> T {
+            let m = T::from_f64(self.m);
+            let l = T::from_f64(self.l);
+            let g = T::from_f64(self.g);
+            let x = __q[0usize];
+            let y = __q[1usize];
+            let z = __q[2usize];
+            let __der_x = __v[0usize];
+            let __der_y = __v[1usize];
+            let __der_z = __v[2usize];
+            (T::from_f64(0.5 as f64) * m
+                * (__der_x.powi(2) + __der_y.powi(2) + __der_z.powi(2))) - (m * g * z)
+        }
+        fn constraints<T: ::evi_core::__private::Scalar>(
+            &self,
+            t: T,
+            __q: &[T],
+            __residuals: &mut [T],
+        ) {
+            let m = T::from_f64(self.m);
+            let l = T::from_f64(self.l);
+            let g = T::from_f64(self.g);
+            let x = __q[0usize];
+            let y = __q[1usize];
+            let z = __q[2usize];
+            __residuals[0usize] = (x.powi(2) + y.powi(2) + z.powi(2)) - (l.powi(2));
+        }
+    }
+};

@@ -1,0 +1,270 @@
+// operations               + -   *   / f()
+// constants                  0   3   0   0
+// lagrangian                 5   8   0   1
+// lagrangian_gradient        3  10   1   1
+// lagrangian_derivatives     8  25   1   1
+// constraints                0   0   0   0
+// constraint_derivatives     0   0   0   0
+// constraint_curvature       0   0   0   0
+
+const _: () = {
+    #[automatically_derived]
+    #[allow(unused_variables, unused_parens, clippy::all)]
+    impl ::evi_core::__private::MechanicalSystem for StiffSpringPendulum {
+        const COORDINATES: &'static [&'static str] = &["x", "y"];
+        const CONSTRAINTS: &'static [&'static str] = &[];
+        const PARAMETERS: &'static [&'static str] = &["m", "l", "k", "g"];
+        const STRUCTURE: ::evi_core::__private::Structure = ::evi_core::__private::Structure {
+            hessian: ::evi_core::__private::HessianPattern {
+                qq: &[
+                    ::evi_core::__private::Entry {
+                        row: 0usize,
+                        col: 0usize,
+                        value: ::evi_core::__private::EntryValue::Varying(0usize),
+                    },
+                    ::evi_core::__private::Entry {
+                        row: 1usize,
+                        col: 0usize,
+                        value: ::evi_core::__private::EntryValue::Varying(1usize),
+                    },
+                    ::evi_core::__private::Entry {
+                        row: 1usize,
+                        col: 1usize,
+                        value: ::evi_core::__private::EntryValue::Varying(2usize),
+                    },
+                ],
+                vq: &[],
+                vv: &[
+                    ::evi_core::__private::Entry {
+                        row: 0usize,
+                        col: 0usize,
+                        value: ::evi_core::__private::EntryValue::Constant(0usize),
+                    },
+                    ::evi_core::__private::Entry {
+                        row: 1usize,
+                        col: 1usize,
+                        value: ::evi_core::__private::EntryValue::Constant(0usize),
+                    },
+                ],
+                vt: &[],
+            },
+            jacobian: ::evi_core::__private::JacobianPattern {
+                q: &[],
+                t: &[],
+            },
+            mass: ::evi_core::__private::Dependence {
+                on_q: false,
+                on_v: false,
+                on_t: false,
+            },
+            lagrangian: ::evi_core::__private::Dependence {
+                on_q: true,
+                on_v: true,
+                on_t: false,
+            },
+            constraints: ::evi_core::__private::Dependence {
+                on_q: false,
+                on_v: false,
+                on_t: false,
+            },
+            operations: ::evi_core::__private::KernelOperations {
+                constants: ::evi_core::__private::Operations {
+                    additions: 0usize,
+                    multiplications: 3usize,
+                    divisions: 0usize,
+                    functions: 0usize,
+                },
+                lagrangian: ::evi_core::__private::Operations {
+                    additions: 5usize,
+                    multiplications: 8usize,
+                    divisions: 0usize,
+                    functions: 1usize,
+                },
+                lagrangian_gradient: ::evi_core::__private::Operations {
+                    additions: 3usize,
+                    multiplications: 10usize,
+                    divisions: 1usize,
+                    functions: 1usize,
+                },
+                lagrangian_derivatives: ::evi_core::__private::Operations {
+                    additions: 8usize,
+                    multiplications: 25usize,
+                    divisions: 1usize,
+                    functions: 1usize,
+                },
+                constraints: ::evi_core::__private::Operations {
+                    additions: 0usize,
+                    multiplications: 0usize,
+                    divisions: 0usize,
+                    functions: 0usize,
+                },
+                constraint_derivatives: ::evi_core::__private::Operations {
+                    additions: 0usize,
+                    multiplications: 0usize,
+                    divisions: 0usize,
+                    functions: 0usize,
+                },
+                constraint_curvature: ::evi_core::__private::Operations {
+                    additions: 0usize,
+                    multiplications: 0usize,
+                    divisions: 0usize,
+                    functions: 0usize,
+                },
+            },
+        };
+        type PerCoordinate<X: ::core::clone::Clone> = [X; 2usize];
+        type PerConstraint<X: ::core::clone::Clone> = [X; 0usize];
+        type PerUnknown<X: ::core::clone::Clone> = [X; 2usize];
+        type PerParameter<X: ::core::clone::Clone> = [X; 4usize];
+        type PerConstant<X: ::core::clone::Clone> = [X; 6usize];
+        type PerHessianEntry<X: ::core::clone::Clone> = [X; 3usize];
+        type PerJacobianEntry<X: ::core::clone::Clone> = [X; 0usize];
+        type KktFactors = ::evi_core::__private::DenseLu<2usize>;
+        type MassFactors = ::evi_core::__private::DenseLu<2usize>;
+        type GramFactors = ::evi_core::__private::DenseLu<0usize>;
+        #[inline]
+        fn parameters(&self) -> Self::PerParameter<f64> {
+            [self.m, self.l, self.k, self.g]
+        }
+        #[inline]
+        fn constants<T: ::evi_core::__private::Scalar>(
+            p: &Self::PerParameter<T>,
+        ) -> Self::PerConstant<T> {
+            let x0 = T::from_f64(0.5) * p[0usize];
+            let x1 = T::from_f64(0.5) * p[2usize];
+            let x2 = p[0usize] * p[3usize];
+            [p[0usize], p[1usize], x0, x1, x2, p[2usize]]
+        }
+        #[inline]
+        fn lagrangian<T: ::evi_core::__private::Scalar>(
+            c: &Self::PerConstant<T>,
+            t: T,
+            q: &Self::PerCoordinate<T>,
+            v: &Self::PerCoordinate<T>,
+        ) -> T {
+            let x0 = (((q[0usize] * q[0usize]) + (q[1usize] * q[1usize])).sqrt())
+                - c[1usize];
+            let x1 = (c[2usize] * ((v[0usize] * v[0usize]) + (v[1usize] * v[1usize])))
+                - ((q[1usize] * c[4usize]) + (c[3usize] * (x0 * x0)));
+            x1
+        }
+        #[inline]
+        fn lagrangian_gradient<T: ::evi_core::__private::Scalar>(
+            c: &Self::PerConstant<T>,
+            t: T,
+            q: &Self::PerCoordinate<T>,
+            v: &Self::PerCoordinate<T>,
+        ) -> ::evi_core::__private::LagrangianGradient<Self, T> {
+            let x0 = ((q[0usize] * q[0usize]) + (q[1usize] * q[1usize])).sqrt();
+            let x1 = x0 - c[1usize];
+            let x2 = T::from_f64(1.0) / x0;
+            let x3 = -(c[5usize] * (x1 * (q[0usize] * x2)));
+            let x4 = -(c[4usize] + (c[5usize] * (x1 * (q[1usize] * x2))));
+            let x5 = c[0usize] * v[0usize];
+            let x6 = c[0usize] * v[1usize];
+            ::evi_core::__private::LagrangianGradient {
+                force: [x3, x4],
+                momentum: [x5, x6],
+            }
+        }
+        #[inline]
+        fn lagrangian_derivatives<T: ::evi_core::__private::Scalar>(
+            c: &Self::PerConstant<T>,
+            t: T,
+            q: &Self::PerCoordinate<T>,
+            v: &Self::PerCoordinate<T>,
+        ) -> (
+            ::evi_core::__private::LagrangianGradient<Self, T>,
+            Self::PerHessianEntry<T>,
+        ) {
+            let x0 = ((q[0usize] * q[0usize]) + (q[1usize] * q[1usize])).sqrt();
+            let x1 = x0 - c[1usize];
+            let x2 = T::from_f64(1.0) / x0;
+            let x3 = q[0usize] * x2;
+            let x4 = -(c[5usize] * (x1 * x3));
+            let x5 = q[1usize] * x2;
+            let x6 = -(c[4usize] + (c[5usize] * (x1 * x5)));
+            let x7 = c[0usize] * v[0usize];
+            let x8 = c[0usize] * v[1usize];
+            let x9 = x2 * x2;
+            let x10 = x3 * x9;
+            let x11 = -(c[5usize] * ((x3 * x3) + (x1 * (x2 - (q[0usize] * x10)))));
+            let x12 = -(c[5usize] * ((x3 * x5) - (x1 * (q[1usize] * x10))));
+            let x13 = -(c[5usize] * ((x5 * x5) + (x1 * (x2 - (q[1usize] * (x5 * x9))))));
+            (
+                ::evi_core::__private::LagrangianGradient {
+                    force: [x4, x6],
+                    momentum: [x7, x8],
+                },
+                [x11, x12, x13],
+            )
+        }
+        #[inline]
+        fn constraints<T: ::evi_core::__private::Scalar>(
+            c: &Self::PerConstant<T>,
+            t: T,
+            q: &Self::PerCoordinate<T>,
+        ) -> Self::PerConstraint<T> {
+            []
+        }
+        #[inline]
+        fn constraint_derivatives<T: ::evi_core::__private::Scalar>(
+            c: &Self::PerConstant<T>,
+            t: T,
+            q: &Self::PerCoordinate<T>,
+        ) -> (Self::PerConstraint<T>, Self::PerJacobianEntry<T>) {
+            ([], [])
+        }
+        #[inline]
+        fn constraint_curvature<T: ::evi_core::__private::Scalar>(
+            c: &Self::PerConstant<T>,
+            t: T,
+            q: &Self::PerCoordinate<T>,
+            v: &Self::PerCoordinate<T>,
+        ) -> Self::PerConstraint<T> {
+            []
+        }
+    }
+    #[automatically_derived]
+    #[allow(unused, non_snake_case, clippy::all)]
+    impl ::evi_core::__private::GenericSystem for StiffSpringPendulum {
+        fn n_coordinates(&self) -> usize {
+            2usize
+        }
+        fn n_constraints(&self) -> usize {
+            0usize
+        }
+        fn lagrangian<T: ::evi_core::__private::Scalar>(
+            &self,
+            t: T,
+            __q: &[T],
+            __v: &[T],
+        ) -> T {
+            let m = T::from_f64(self.m);
+            let l = T::from_f64(self.l);
+            let k = T::from_f64(self.k);
+            let g = T::from_f64(self.g);
+            let x = __q[0usize];
+            let y = __q[1usize];
+            let __der_x = __v[0usize];
+            let __der_y = __v[1usize];
+            let stretch = (x.powi(2) + y.powi(2)).sqrt() - l;
+            (T::from_f64(0.5 as f64) * m * (__der_x.powi(2) + __der_y.powi(2)))
+                - (T::from_f64(0.5 as f64) * k * stretch.powi(2) + m * g * y)
+        }
+        fn constraints<T: ::evi_core::__private::Scalar>(
+            &self,
+            t: T,
+            __q: &[T],
+            __residuals: &mut [T],
+        ) {
+            let m = T::from_f64(self.m);
+            let l = T::from_f64(self.l);
+            let k = T::from_f64(self.k);
+            let g = T::from_f64(self.g);
+            let x = __q[0usize];
+            let y = __q[1usize];
+            let stretch = (x.powi(2) + y.powi(2)).sqrt() - l;
+        }
+    }
+};

@@ -1,0 +1,19 @@
+//! Tests of the compiler, stage by stage.
+//!
+//! The interpreter `expr::evaluate` is the oracle: over `f64` it says what a graph is worth, over the dual
+//! numbers of num-dual what its derivatives are, without the compiler's rules. Expressions are written as a
+//! user writes them. `tests/kernels.rs` of the workspace checks the same of the emitted code.
+
+mod differentiation;
+mod emission;
+mod graph;
+mod mistakes;
+mod scheduling;
+mod simplification;
+mod snapshots;
+mod sparsity;
+mod systems;
+mod workbench;
+
+#[path = "../../../tests/random_expressions/mod.rs"]
+mod random_expressions;
