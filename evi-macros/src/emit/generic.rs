@@ -1,9 +1,9 @@
 //! The user's expressions once more, in the user's order and with the user's spans, generic over the scalar.
 //!
-//! Only numbers, constants and `der(..)` are rewritten. Nothing of the graph is used: this copy is the oracle that the
-//! kernels are tested against.
+//! Only numbers, constants, `der(..)` and the spelling of names are rewritten. Nothing of the graph is used: this copy is
+//! the oracle that the kernels are tested against.
 
-use proc_macro2::{Group, Ident, TokenStream, TokenTree};
+use proc_macro2::{Group, Ident, Literal, TokenStream, TokenTree};
 use quote::{ToTokens, format_ident, quote, quote_spanned};
 
 use crate::model::{LagrangianSource, Model};
@@ -13,15 +13,23 @@ use crate::syntax::{Declaration, Expression};
 pub(super) fn generic_system(declaration: &Declaration, model: &Model) -> TokenStream {
     let struct_name = &declaration.name;
     let (n_coordinates, n_constraints) = (model.coordinates.len(), model.constraints.len());
-    let rewriter = Rewriter { constants: model.named_constants.iter().map(TokenStream::to_string).collect() };
-    let parameters: TokenStream = model
-        .parameters
-        .iter()
-        .map(|&field| &declaration.fields[field].name)
-        .map(|name| quote!(let #name = T::from_f64(self.#name);))
+    let fields = || model.parameters.iter().map(|&field| &declaration.fields[field].name);
+    let shared = model.source.lets.iter().map(|shared| &shared.name);
+    let rewriter = Rewriter {
+        constants: model.named_constants.iter().map(TokenStream::to_string).collect(),
+        names: fields().chain(&model.coordinates).chain(shared).map(Ident::to_string).collect(),
+    };
+    let parameters: TokenStream = fields()
+        .map(|field| (local_name(field), field))
+        .map(|(name, field)| quote!(let #name = T::from_f64(self.#field);))
         .collect();
-    let positions: TokenStream =
-        model.coordinates.iter().enumerate().map(|(i, name)| quote!(let #name = __q[#i];)).collect();
+    let positions: TokenStream = model
+        .coordinates
+        .iter()
+        .enumerate()
+        .map(|(i, name)| (i, local_name(name)))
+        .map(|(i, name)| quote!(let #name = __q[#i];))
+        .collect();
     let velocities: TokenStream = model
         .coordinates
         .iter()
@@ -32,7 +40,7 @@ pub(super) fn generic_system(declaration: &Declaration, model: &Model) -> TokenS
     let lets = |with_velocities: bool| -> TokenStream {
         let usable = model.source.lets.iter().filter(|shared| with_velocities || !shared.has_velocity);
         usable
-            .map(|shared| (&shared.name, rewriter.expression(&shared.value)))
+            .map(|shared| (local_name(&shared.name), rewriter.expression(&shared.value)))
             .map(|(name, value)| quote!(let #name = #value;))
             .collect()
     };
@@ -54,7 +62,7 @@ pub(super) fn generic_system(declaration: &Declaration, model: &Model) -> TokenS
     });
     quote! {
         #[automatically_derived]
-        #[allow(unused, non_snake_case, clippy::all)]
+        #[allow(unused, non_snake_case, trivial_numeric_casts, clippy::all)]
         impl ::evi_core::__private::GenericSystem for #struct_name {
             fn n_coordinates(&self) -> usize {
                 #n_coordinates
@@ -77,14 +85,21 @@ pub(super) fn generic_system(declaration: &Declaration, model: &Model) -> TokenS
     }
 }
 
+/// The variable for a name of the user. Not the name itself: a binding cannot have the name of a constant in scope.
+fn local_name(name: &Ident) -> Ident {
+    format_ident!("__name_{}", name, span = name.span())
+}
+
 fn velocity_name(coordinate: &Ident) -> Ident {
-    format_ident!("__der_{coordinate}")
+    format_ident!("__der_{}", coordinate, span = coordinate.span())
 }
 
 /// Rewrites the tokens of an expression for the scalar `T`.
 struct Rewriter {
     /// Constants that rustc resolves, as written.
     constants: Vec<String>,
+    /// Parameters, coordinates and shared expressions.
+    names: Vec<String>,
 }
 
 impl Rewriter {
@@ -116,7 +131,19 @@ impl Rewriter {
                     path_length
                 }
                 [TokenTree::Literal(number), ..] => {
-                    rewritten.extend(quote_spanned!(number.span()=> T::from_f64(#number as f64)));
+                    let value = real_number(number);
+                    rewritten.extend(quote_spanned!(number.span()=> T::from_f64(#value)));
+                    1
+                }
+                // Behind a dot stands the name of a function.
+                [TokenTree::Punct(dot), TokenTree::Ident(method), ..]
+                    if dot.as_char() == '.' && method != "powi" =>
+                {
+                    rewritten.extend(rest[..2].iter().cloned());
+                    2
+                }
+                [TokenTree::Ident(name), ..] if self.names.contains(&name.to_string()) => {
+                    rewritten.extend(local_name(name).to_token_stream());
                     1
                 }
                 [TokenTree::Group(group), ..] => {
@@ -133,6 +160,16 @@ impl Rewriter {
             rest = &rest[consumed..];
         }
         rewritten
+    }
+}
+
+/// A number as a literal of type f64: `2` as `2.0`.
+fn real_number(number: &Literal) -> Literal {
+    let digits = number.to_string().replace('_', "");
+    match digits.trim_end_matches("f64").parse::<f64>() {
+        Ok(value) => Literal::f64_suffixed(value),
+        // Hexadecimal and the like.
+        Err(_) => number.clone(),
     }
 }
 

@@ -46,7 +46,7 @@ pub(crate) fn implementation(
     quote! {
         const _: () = {
             #[automatically_derived]
-            #[allow(unused_variables, unused_parens, clippy::all)]
+            #[allow(unused_variables, unused_parens, trivial_numeric_casts, clippy::all)]
             impl ::evi_core::__private::MechanicalSystem for #struct_name {
                 #names
                 #structure
@@ -67,7 +67,7 @@ pub(crate) fn implementation(
 
 /// The names of coordinates, constraints and parameters.
 fn names(declaration: &Declaration, model: &Model) -> TokenStream {
-    let text = |name: &Ident| name.to_string();
+    let text = |name: &Ident| name.to_string().trim_start_matches("r#").to_owned();
     let coordinates = model.coordinates.iter().map(text);
     let constraints = model.constraints.iter().map(|(name, _)| text(name));
     let parameters = model.parameters.iter().map(|&field| text(&declaration.fields[field].name));

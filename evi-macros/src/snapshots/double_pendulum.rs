@@ -9,7 +9,7 @@
 
 const _: () = {
     #[automatically_derived]
-    #[allow(unused_variables, unused_parens, clippy::all)]
+    #[allow(unused_variables, unused_parens, trivial_numeric_casts, clippy::all)]
     impl ::evi_core::__private::MechanicalSystem for DoublePendulum {
         const COORDINATES: &'static [&'static str] = &["x1", "y1", "x2", "y2"];
         const CONSTRAINTS: &'static [&'static str] = &["rod1", "rod2"];
@@ -259,7 +259,7 @@ const _: () = {
         }
     }
     #[automatically_derived]
-    #[allow(unused, non_snake_case, clippy::all)]
+    #[allow(unused, non_snake_case, trivial_numeric_casts, clippy::all)]
     impl ::evi_core::__private::GenericSystem for DoublePendulum {
         fn n_coordinates(&self) -> usize {
             4usize
@@ -273,22 +273,23 @@ const _: () = {
             __q: &[T],
             __v: &[T],
         ) -> T {
-            let m1 = T::from_f64(self.m1);
-            let m2 = T::from_f64(self.m2);
-            let l1 = T::from_f64(self.l1);
-            let l2 = T::from_f64(self.l2);
-            let g = T::from_f64(self.g);
-            let x1 = __q[0usize];
-            let y1 = __q[1usize];
-            let x2 = __q[2usize];
-            let y2 = __q[3usize];
+            let __name_m1 = T::from_f64(self.m1);
+            let __name_m2 = T::from_f64(self.m2);
+            let __name_l1 = T::from_f64(self.l1);
+            let __name_l2 = T::from_f64(self.l2);
+            let __name_g = T::from_f64(self.g);
+            let __name_x1 = __q[0usize];
+            let __name_y1 = __q[1usize];
+            let __name_x2 = __q[2usize];
+            let __name_y2 = __q[3usize];
             let __der_x1 = __v[0usize];
             let __der_y1 = __v[1usize];
             let __der_x2 = __v[2usize];
             let __der_y2 = __v[3usize];
-            (T::from_f64(0.5 as f64) * m1 * (__der_x1.powi(2) + __der_y1.powi(2))
-                + T::from_f64(0.5 as f64) * m2 * (__der_x2.powi(2) + __der_y2.powi(2)))
-                - (g * (m1 * y1 + m2 * y2))
+            (T::from_f64(0.5f64) * __name_m1 * (__der_x1.powi(2) + __der_y1.powi(2))
+                + T::from_f64(0.5f64) * __name_m2
+                    * (__der_x2.powi(2) + __der_y2.powi(2)))
+                - (__name_g * (__name_m1 * __name_y1 + __name_m2 * __name_y2))
         }
         fn constraints<T: ::evi_core::__private::Scalar>(
             &self,
@@ -296,17 +297,19 @@ const _: () = {
             __q: &[T],
             __residuals: &mut [T],
         ) {
-            let m1 = T::from_f64(self.m1);
-            let m2 = T::from_f64(self.m2);
-            let l1 = T::from_f64(self.l1);
-            let l2 = T::from_f64(self.l2);
-            let g = T::from_f64(self.g);
-            let x1 = __q[0usize];
-            let y1 = __q[1usize];
-            let x2 = __q[2usize];
-            let y2 = __q[3usize];
-            __residuals[0usize] = (x1.powi(2) + y1.powi(2)) - (l1.powi(2));
-            __residuals[1usize] = ((x2 - x1).powi(2) + (y2 - y1).powi(2)) - (l2.powi(2));
+            let __name_m1 = T::from_f64(self.m1);
+            let __name_m2 = T::from_f64(self.m2);
+            let __name_l1 = T::from_f64(self.l1);
+            let __name_l2 = T::from_f64(self.l2);
+            let __name_g = T::from_f64(self.g);
+            let __name_x1 = __q[0usize];
+            let __name_y1 = __q[1usize];
+            let __name_x2 = __q[2usize];
+            let __name_y2 = __q[3usize];
+            __residuals[0usize] = (__name_x1.powi(2) + __name_y1.powi(2))
+                - (__name_l1.powi(2));
+            __residuals[1usize] = ((__name_x2 - __name_x1).powi(2)
+                + (__name_y2 - __name_y1).powi(2)) - (__name_l2.powi(2));
         }
     }
 };

@@ -9,7 +9,7 @@
 
 const _: () = {
     #[automatically_derived]
-    #[allow(unused_variables, unused_parens, clippy::all)]
+    #[allow(unused_variables, unused_parens, trivial_numeric_casts, clippy::all)]
     impl ::evi_core::__private::MechanicalSystem for HarmonicOscillator {
         const COORDINATES: &'static [&'static str] = &["x"];
         const CONSTRAINTS: &'static [&'static str] = &[];
@@ -192,7 +192,7 @@ const _: () = {
         }
     }
     #[automatically_derived]
-    #[allow(unused, non_snake_case, clippy::all)]
+    #[allow(unused, non_snake_case, trivial_numeric_casts, clippy::all)]
     impl ::evi_core::__private::GenericSystem for HarmonicOscillator {
         fn n_coordinates(&self) -> usize {
             1usize
@@ -206,12 +206,12 @@ const _: () = {
             __q: &[T],
             __v: &[T],
         ) -> T {
-            let m = T::from_f64(self.m);
-            let k = T::from_f64(self.k);
-            let x = __q[0usize];
+            let __name_m = T::from_f64(self.m);
+            let __name_k = T::from_f64(self.k);
+            let __name_x = __q[0usize];
             let __der_x = __v[0usize];
-            (T::from_f64(0.5 as f64) * m * __der_x.powi(2))
-                - (T::from_f64(0.5 as f64) * k * x.powi(2))
+            (T::from_f64(0.5f64) * __name_m * __der_x.powi(2))
+                - (T::from_f64(0.5f64) * __name_k * __name_x.powi(2))
         }
         fn constraints<T: ::evi_core::__private::Scalar>(
             &self,
@@ -219,9 +219,9 @@ const _: () = {
             __q: &[T],
             __residuals: &mut [T],
         ) {
-            let m = T::from_f64(self.m);
-            let k = T::from_f64(self.k);
-            let x = __q[0usize];
+            let __name_m = T::from_f64(self.m);
+            let __name_k = T::from_f64(self.k);
+            let __name_x = __q[0usize];
         }
     }
 };

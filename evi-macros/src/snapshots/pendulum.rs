@@ -9,7 +9,7 @@
 
 const _: () = {
     #[automatically_derived]
-    #[allow(unused_variables, unused_parens, clippy::all)]
+    #[allow(unused_variables, unused_parens, trivial_numeric_casts, clippy::all)]
     impl ::evi_core::__private::MechanicalSystem for Pendulum {
         const COORDINATES: &'static [&'static str] = &["theta"];
         const CONSTRAINTS: &'static [&'static str] = &[];
@@ -195,7 +195,7 @@ const _: () = {
         }
     }
     #[automatically_derived]
-    #[allow(unused, non_snake_case, clippy::all)]
+    #[allow(unused, non_snake_case, trivial_numeric_casts, clippy::all)]
     impl ::evi_core::__private::GenericSystem for Pendulum {
         fn n_coordinates(&self) -> usize {
             1usize
@@ -209,13 +209,13 @@ const _: () = {
             __q: &[T],
             __v: &[T],
         ) -> T {
-            let m = T::from_f64(self.m);
-            let l = T::from_f64(self.l);
-            let g = T::from_f64(self.g);
-            let theta = __q[0usize];
+            let __name_m = T::from_f64(self.m);
+            let __name_l = T::from_f64(self.l);
+            let __name_g = T::from_f64(self.g);
+            let __name_theta = __q[0usize];
             let __der_theta = __v[0usize];
-            (T::from_f64(0.5 as f64) * m * l.powi(2) * __der_theta.powi(2))
-                - (-m * g * l * theta.cos())
+            (T::from_f64(0.5f64) * __name_m * __name_l.powi(2) * __der_theta.powi(2))
+                - (-__name_m * __name_g * __name_l * __name_theta.cos())
         }
         fn constraints<T: ::evi_core::__private::Scalar>(
             &self,
@@ -223,10 +223,10 @@ const _: () = {
             __q: &[T],
             __residuals: &mut [T],
         ) {
-            let m = T::from_f64(self.m);
-            let l = T::from_f64(self.l);
-            let g = T::from_f64(self.g);
-            let theta = __q[0usize];
+            let __name_m = T::from_f64(self.m);
+            let __name_l = T::from_f64(self.l);
+            let __name_g = T::from_f64(self.g);
+            let __name_theta = __q[0usize];
         }
     }
 };

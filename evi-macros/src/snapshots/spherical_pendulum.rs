@@ -9,7 +9,7 @@
 
 const _: () = {
     #[automatically_derived]
-    #[allow(unused_variables, unused_parens, clippy::all)]
+    #[allow(unused_variables, unused_parens, trivial_numeric_casts, clippy::all)]
     impl ::evi_core::__private::MechanicalSystem for SphericalPendulum {
         const COORDINATES: &'static [&'static str] = &["x", "y", "z"];
         const CONSTRAINTS: &'static [&'static str] = &["rod"];
@@ -226,7 +226,7 @@ const _: () = {
         }
     }
     #[automatically_derived]
-    #[allow(unused, non_snake_case, clippy::all)]
+    #[allow(unused, non_snake_case, trivial_numeric_casts, clippy::all)]
     impl ::evi_core::__private::GenericSystem for SphericalPendulum {
         fn n_coordinates(&self) -> usize {
             3usize
@@ -240,17 +240,18 @@ const _: () = {
             __q: &[T],
             __v: &[T],
         ) -> T {
-            let m = T::from_f64(self.m);
-            let l = T::from_f64(self.l);
-            let g = T::from_f64(self.g);
-            let x = __q[0usize];
-            let y = __q[1usize];
-            let z = __q[2usize];
+            let __name_m = T::from_f64(self.m);
+            let __name_l = T::from_f64(self.l);
+            let __name_g = T::from_f64(self.g);
+            let __name_x = __q[0usize];
+            let __name_y = __q[1usize];
+            let __name_z = __q[2usize];
             let __der_x = __v[0usize];
             let __der_y = __v[1usize];
             let __der_z = __v[2usize];
-            (T::from_f64(0.5 as f64) * m
-                * (__der_x.powi(2) + __der_y.powi(2) + __der_z.powi(2))) - (m * g * z)
+            (T::from_f64(0.5f64) * __name_m
+                * (__der_x.powi(2) + __der_y.powi(2) + __der_z.powi(2)))
+                - (__name_m * __name_g * __name_z)
         }
         fn constraints<T: ::evi_core::__private::Scalar>(
             &self,
@@ -258,13 +259,14 @@ const _: () = {
             __q: &[T],
             __residuals: &mut [T],
         ) {
-            let m = T::from_f64(self.m);
-            let l = T::from_f64(self.l);
-            let g = T::from_f64(self.g);
-            let x = __q[0usize];
-            let y = __q[1usize];
-            let z = __q[2usize];
-            __residuals[0usize] = (x.powi(2) + y.powi(2) + z.powi(2)) - (l.powi(2));
+            let __name_m = T::from_f64(self.m);
+            let __name_l = T::from_f64(self.l);
+            let __name_g = T::from_f64(self.g);
+            let __name_x = __q[0usize];
+            let __name_y = __q[1usize];
+            let __name_z = __q[2usize];
+            __residuals[0usize] = (__name_x.powi(2) + __name_y.powi(2)
+                + __name_z.powi(2)) - (__name_l.powi(2));
         }
     }
 };

@@ -9,7 +9,7 @@
 
 const _: () = {
     #[automatically_derived]
-    #[allow(unused_variables, unused_parens, clippy::all)]
+    #[allow(unused_variables, unused_parens, trivial_numeric_casts, clippy::all)]
     impl ::evi_core::__private::MechanicalSystem for StiffSpringPendulum {
         const COORDINATES: &'static [&'static str] = &["x", "y"];
         const CONSTRAINTS: &'static [&'static str] = &[];
@@ -226,7 +226,7 @@ const _: () = {
         }
     }
     #[automatically_derived]
-    #[allow(unused, non_snake_case, clippy::all)]
+    #[allow(unused, non_snake_case, trivial_numeric_casts, clippy::all)]
     impl ::evi_core::__private::GenericSystem for StiffSpringPendulum {
         fn n_coordinates(&self) -> usize {
             2usize
@@ -240,17 +240,18 @@ const _: () = {
             __q: &[T],
             __v: &[T],
         ) -> T {
-            let m = T::from_f64(self.m);
-            let l = T::from_f64(self.l);
-            let k = T::from_f64(self.k);
-            let g = T::from_f64(self.g);
-            let x = __q[0usize];
-            let y = __q[1usize];
+            let __name_m = T::from_f64(self.m);
+            let __name_l = T::from_f64(self.l);
+            let __name_k = T::from_f64(self.k);
+            let __name_g = T::from_f64(self.g);
+            let __name_x = __q[0usize];
+            let __name_y = __q[1usize];
             let __der_x = __v[0usize];
             let __der_y = __v[1usize];
-            let stretch = (x.powi(2) + y.powi(2)).sqrt() - l;
-            (T::from_f64(0.5 as f64) * m * (__der_x.powi(2) + __der_y.powi(2)))
-                - (T::from_f64(0.5 as f64) * k * stretch.powi(2) + m * g * y)
+            let __name_stretch = (__name_x.powi(2) + __name_y.powi(2)).sqrt() - __name_l;
+            (T::from_f64(0.5f64) * __name_m * (__der_x.powi(2) + __der_y.powi(2)))
+                - (T::from_f64(0.5f64) * __name_k * __name_stretch.powi(2)
+                    + __name_m * __name_g * __name_y)
         }
         fn constraints<T: ::evi_core::__private::Scalar>(
             &self,
@@ -258,13 +259,13 @@ const _: () = {
             __q: &[T],
             __residuals: &mut [T],
         ) {
-            let m = T::from_f64(self.m);
-            let l = T::from_f64(self.l);
-            let k = T::from_f64(self.k);
-            let g = T::from_f64(self.g);
-            let x = __q[0usize];
-            let y = __q[1usize];
-            let stretch = (x.powi(2) + y.powi(2)).sqrt() - l;
+            let __name_m = T::from_f64(self.m);
+            let __name_l = T::from_f64(self.l);
+            let __name_k = T::from_f64(self.k);
+            let __name_g = T::from_f64(self.g);
+            let __name_x = __q[0usize];
+            let __name_y = __q[1usize];
+            let __name_stretch = (__name_x.powi(2) + __name_y.powi(2)).sqrt() - __name_l;
         }
     }
 };

@@ -1,7 +1,7 @@
 //! Every form of the grammar; the emitted code warns nowhere.
 
 #![deny(warnings, missing_docs, unused, nonstandard_style, future_incompatible, rust_2018_idioms)]
-#![deny(trivial_casts, unused_qualifications, unreachable_pub, single_use_lifetimes)]
+#![deny(trivial_casts, trivial_numeric_casts, unused_qualifications, unreachable_pub, single_use_lifetimes)]
 
 use evi_core::prelude::*;
 

@@ -73,6 +73,29 @@ pub struct Unnamed {
     pub history: Vec<(f32, usize)>,
 }
 
+/// Names that Rust would not bind as they stand: keywords, and names of constants in scope.
+#[derive(MechanicalSystem)]
+#[evi(
+    coordinates(r#type, MASS),
+    let LENGTH = 2.0 * K,
+    lagrangian = 0.5 * r#loop * (der(r#type).powi(2) + der(MASS).powi(2)) - 10000000000 * LENGTH * MASS,
+    constraint(rod: r#type.powi(2) + MASS.powi(2) == LENGTH),
+)]
+#[allow(non_snake_case, reason = "constants are in capitals")]
+pub struct Bound {
+    /// A keyword.
+    pub r#loop: f64,
+    /// A constant below.
+    pub K: f64,
+}
+
+/// In scope of the struct above.
+pub const MASS: f64 = 1.0;
+/// Likewise.
+pub const LENGTH: f64 = 1.0;
+/// Likewise.
+pub const K: f64 = 1.0;
+
 /// Written by another macro.
 macro_rules! oscillator {
     ($name:ident, $q:ident, $parameter:ident, $potential:expr) => {
@@ -100,5 +123,6 @@ fn main() {
     assert!(run.integrate(0.1).unwrap().last().q()[0] < 1.0);
     let named = (Arguments::COORDINATES, Prelude::CONSTRAINTS);
     assert_eq!(named, (&["q", "v", "c", "T", "p", "x0"][..], &["lagrangian", "type"][..]));
+    assert_eq!((Bound::COORDINATES, Bound::PARAMETERS), (&["type", "MASS"][..], &["loop", "K"][..]));
     assert_eq!((T::PARAMETERS, Unnamed::PARAMETERS, Macro::PARAMETERS), (&["M"][..], &["mass"][..], &["stiffness"][..]));
 }
