@@ -7,6 +7,9 @@ use evi_core::baseline::{Rattle, Rk4};
 use evi_core::prelude::*;
 use evi_examples::{DoublePendulum, SphericalPendulum, Start, StiffSpringPendulum};
 
+#[path = "hand_written/double_pendulum.rs"]
+mod hand_written;
+
 const H: f64 = 0.01;
 
 fn steps(criterion: &mut Criterion) {
@@ -22,6 +25,8 @@ fn steps(criterion: &mut Criterion) {
     measure(&mut group, "evi_simpson_omega_per_coordinate", Simulation::new(pendulum, per_coordinate), start);
     measure(&mut group, "rattle", Simulation::new(pendulum, Rattle::new(H)), start);
     measure(&mut group, "rk4", Simulation::new(pendulum, Rk4::new(H)), start);
+    let mut run = hand_written::HandWritten::new(&pendulum, start, H);
+    group.bench_function("hand_written_midpoint", |bencher| bencher.iter(|| run.advance()));
     group.finish();
 
     let pendulum = SphericalPendulum::UNIT;

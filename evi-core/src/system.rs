@@ -43,6 +43,8 @@ pub trait MechanicalSystem: Sized {
 
     /// Solver of the saddle-point systems of the scene, `(n + m) × (n + m)`.
     type KktFactors: Factorization<Self::PerUnknown<f64>, Self::PerUnknown<Self::PerUnknown<f64>>>;
+    /// Solver of systems of that size with any pattern, with pivoting.
+    type DenseKktFactors: Factorization<Self::PerUnknown<f64>, Self::PerUnknown<Self::PerUnknown<f64>>>;
     /// Solver of systems with the mass matrix, `n × n`.
     type MassFactors: Factorization<Self::PerCoordinate<f64>, Self::PerCoordinate<Self::PerCoordinate<f64>>>;
     /// Solver of systems with the Gram matrix `G M⁻¹ Gᵀ` of the constraints, `m × m`.
@@ -155,6 +157,11 @@ impl Structure {
         !self.mass.on_v
     }
 
+    /// Whether no second derivative of `L` couples two coordinates: every matrix of a step is diagonal.
+    pub const fn is_uncoupled(&self) -> bool {
+        is_diagonal(self.hessian.qq) && is_diagonal(self.hessian.vq) && is_diagonal(self.hessian.vv)
+    }
+
     /// Whether `L = ½ vᵀ M v − V(t, q)` with constant `M`.
     pub const fn is_separable_with_constant_mass(&self) -> bool {
         self.mass.is_constant() && self.hessian.vq.is_empty() && self.hessian.vt.is_empty()
@@ -190,6 +197,35 @@ pub struct HessianPattern {
     pub vv: &'static [Entry],
     /// `∂²L/∂v∂t`: row of `v`, column 0.
     pub vt: &'static [Entry],
+}
+
+impl HessianPattern {
+    /// Whether every second derivative of `L` is constant: `L` is a polynomial of degree two in `(q, v)`.
+    pub const fn is_constant(&self) -> bool {
+        is_constant(self.qq) && is_constant(self.vq) && is_constant(self.vv) && is_constant(self.vt)
+    }
+}
+
+const fn is_diagonal(entries: &[Entry]) -> bool {
+    let mut k = 0;
+    while k < entries.len() {
+        if entries[k].row != entries[k].col {
+            return false;
+        }
+        k += 1;
+    }
+    true
+}
+
+const fn is_constant(entries: &[Entry]) -> bool {
+    let mut k = 0;
+    while k < entries.len() {
+        if let EntryValue::Varying(_) = entries[k].value {
+            return false;
+        }
+        k += 1;
+    }
+    true
 }
 
 /// The structurally nonzero derivatives of `φ`.

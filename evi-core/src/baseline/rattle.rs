@@ -1,7 +1,7 @@
 //! RATTLE, in its classical velocity form.
 
 use crate::array::Array;
-use crate::integrator::{IterationFailure, OneStep, Scheme, StepError, checked_finite};
+use crate::integrator::{IterationFailure, OneStep, Scheme, StepError};
 use crate::linear::{Factorization, SingularMatrix, largest_magnitude};
 use crate::mechanics::{Mechanics, ProjectionError, State, relative};
 use crate::newton;
@@ -69,7 +69,7 @@ impl<S: MechanicalSystem> OneStep<S> for RattleStep<S> {
         &self.mechanics
     }
 
-    fn step(&self, state: &State<S>) -> Result<State<S>, StepError> {
+    fn advance(&mut self, state: &mut State<S>) -> Result<(), StepError> {
         let t = state.t + self.h;
         let mut half_step_velocity = self.kicked(state.t, &state.q, &state.v);
         let q = self.solve_positions(state, &mut half_step_velocity)?;
@@ -77,13 +77,9 @@ impl<S: MechanicalSystem> OneStep<S> for RattleStep<S> {
         self.project(t, &q, &mut v)
             .map_err(|cause| StepError::Projection { t, cause: ProjectionError::Singular(cause) })?;
         let p = self.mechanics.momentum_at(t, &q, &v);
-        checked_finite(State { t, q, v, p })
+        state.replace(t, q, v, p)
     }
 }
-
-/// `M⁻¹ Gᵀ`, a column per constraint.
-type ConstraintDirections<S> =
-    <S as MechanicalSystem>::PerConstraint<<S as MechanicalSystem>::PerCoordinate<f64>>;
 
 impl<S: MechanicalSystem> RattleStep<S> {
     /// `v + ½h M⁻¹ f(t, q)`.
@@ -102,7 +98,7 @@ impl<S: MechanicalSystem> RattleStep<S> {
         let (h, t) = (self.h, state.t + self.h);
         let constants = &self.mechanics.constants;
         let (_, jacobian) = S::constraint_derivatives(constants, state.t, &state.q);
-        let directions = self.directions(&jacobian);
+        let directions = self.mechanics.constraint_directions(&jacobian, |x| self.inverse_mass_times(x));
         let mut q = S::PerCoordinate::<f64>::from_fn(|i| state.q[i] + h * v[i]);
         let mut constraint_residual = 0.0;
         let mut smallest_pivot_ratio = 1.0_f64;
@@ -110,6 +106,7 @@ impl<S: MechanicalSystem> RattleStep<S> {
             let (mut impulse, jacobian) = S::constraint_derivatives(constants, t, &q);
             constraint_residual = largest_magnitude(impulse.as_ref().iter().copied());
             let gram = self
+                .mechanics
                 .factor_gram(&jacobian, &directions)
                 .map_err(|matrix| IterationFailure::Singular { correction, matrix })?;
             smallest_pivot_ratio = smallest_pivot_ratio.min(gram.pivot_ratio());
@@ -140,40 +137,19 @@ impl<S: MechanicalSystem> RattleStep<S> {
         v: &mut S::PerCoordinate<f64>,
     ) -> Result<(), SingularMatrix> {
         let (_, jacobian) = S::constraint_derivatives(&self.mechanics.constants, t, q);
-        let directions = self.directions(&jacobian);
+        let directions = self.mechanics.constraint_directions(&jacobian, |x| self.inverse_mass_times(x));
         let mut impulse = self.mechanics.constraint_rate(jacobian.as_ref(), v);
-        self.factor_gram(&jacobian, &directions)?.solve(&mut impulse);
+        self.mechanics.factor_gram(&jacobian, &directions)?.solve(&mut impulse);
         for i in 0..S::N_COORDINATES {
             v[i] -= (0..S::N_CONSTRAINTS).map(|c| directions[c][i] * impulse[c]).sum::<f64>();
         }
         Ok(())
     }
 
-    fn directions(&self, jacobian: &S::PerJacobianEntry<f64>) -> ConstraintDirections<S> {
-        let mut directions: ConstraintDirections<S> = Array::from_fn(|_| Array::from_fn(|_| 0.0));
-        for entry in S::STRUCTURE.jacobian.q {
-            directions[entry.row][entry.col] =
-                entry.value(self.mechanics.constants.as_ref(), jacobian.as_ref());
-        }
-        for direction in directions.as_mut() {
-            self.mass.solve(direction);
-        }
-        directions
-    }
-
-    /// Factors `G M⁻¹ G₀ᵀ`, where `directions` holds `M⁻¹ G₀ᵀ`.
-    fn factor_gram(
-        &self,
-        jacobian: &S::PerJacobianEntry<f64>,
-        directions: &ConstraintDirections<S>,
-    ) -> Result<S::GramFactors, SingularMatrix> {
-        let mut gram: S::PerConstraint<S::PerConstraint<f64>> = Array::from_fn(|_| Array::from_fn(|_| 0.0));
-        for entry in S::STRUCTURE.jacobian.q {
-            let slope = entry.value(self.mechanics.constants.as_ref(), jacobian.as_ref());
-            for col in 0..S::N_CONSTRAINTS {
-                gram[entry.row][col] += slope * directions[col][entry.col];
-            }
-        }
-        S::GramFactors::factor(&gram)
+    /// `M⁻¹ x`.
+    fn inverse_mass_times(&self, x: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
+        let mut x = x.clone();
+        self.mass.solve(&mut x);
+        x
     }
 }

@@ -1,7 +1,7 @@
 //! The classical Runge-Kutta method on the index-1 equations.
 
 use crate::array::Array;
-use crate::integrator::{OneStep, Scheme, StepError, checked_finite};
+use crate::integrator::{OneStep, Scheme, StepError};
 use crate::mechanics::{Mechanics, State};
 use crate::scheme::{SchemeError, checked_step_size};
 use crate::system::MechanicalSystem;
@@ -73,7 +73,7 @@ impl<S: MechanicalSystem> OneStep<S> for Rk4Step<S> {
         &self.mechanics
     }
 
-    fn step(&self, state: &State<S>) -> Result<State<S>, StepError> {
+    fn advance(&mut self, state: &mut State<S>) -> Result<(), StepError> {
         let h = self.h;
         let k1 = self.slope(state.t, &state.q, state.v.clone())?;
         let k2 = self.slope_after(state, 0.5 * h, &k1)?;
@@ -84,6 +84,6 @@ impl<S: MechanicalSystem> OneStep<S> for Rk4Step<S> {
         let q = Array::from_fn(|i| state.q[i] + h * mean(k1.q[i], k2.q[i], k3.q[i], k4.q[i]));
         let v = Array::from_fn(|i| state.v[i] + h * mean(k1.v[i], k2.v[i], k3.v[i], k4.v[i]));
         let p = self.mechanics.momentum_at(t, &q, &v);
-        checked_finite(State { t, q, v, p })
+        state.replace(t, q, v, p)
     }
 }

@@ -1,9 +1,10 @@
 //! Exponential variational integrators.
 
-use super::{IterationFailure, OneStep, Scheme, StepError, checked_finite};
+use super::multipliers::MultiplierStep;
+use super::{IterationFailure, OneStep, Scheme, StepError};
 use crate::array::Array;
 use crate::linear::{constraint_index, largest_magnitude};
-use crate::mechanics::{DiscreteLagrangian, Mechanics, Projected, State, StepStart, relative};
+use crate::mechanics::{DiscreteLagrangian, FoldedStep, Mechanics, Projected, State, StepStart, relative};
 use crate::newton;
 use crate::scheme::{Frequency, Interpolant, Linear, Quadrature, SchemeError, checked_step_size};
 use crate::system::MechanicalSystem;
@@ -66,13 +67,18 @@ impl<S: MechanicalSystem, const K: usize, F: Interpolant<S>> Scheme<S> for Evi<K
     fn prepare(&self, mechanics: Mechanics<S>) -> Result<Self::Step, SchemeError> {
         let h = checked_step_size(self.h)?;
         let table = self.interpolant.table(&self.quadrature, h)?;
-        Ok(EviStep { action: DiscreteLagrangian::new(mechanics, table, self.quadrature, h) })
+        let action = DiscreteLagrangian::new(mechanics, table, self.quadrature, h);
+        // Where M or A is singular, the constraints are needed to determine the motion: the general step uses them.
+        let folded = if FoldedStep::<S>::EXISTS { FoldedStep::new(&action).ok() } else { None };
+        Ok(EviStep { action, folded: folded.map(MultiplierStep::new) })
     }
 }
 
 /// The one-step map of an [`Evi`] for a scene, with everything folded in that is constant for a run.
 pub struct EviStep<S: MechanicalSystem, F: Interpolant<S>, const K: usize> {
     action: DiscreteLagrangian<S, F::Table<K>, K>,
+    /// The step of a quadratic Lagrangian.
+    folded: Option<MultiplierStep<S>>,
 }
 
 impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> OneStep<S> for EviStep<S, F, K> {
@@ -84,7 +90,13 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> OneStep<S> for EviS
         &self.action.mechanics
     }
 
-    fn step(&self, state: &State<S>) -> Result<State<S>, StepError> {
+    #[inline]
+    fn advance(&mut self, state: &mut State<S>) -> Result<(), StepError> {
+        if FoldedStep::<S>::EXISTS
+            && let Some(folded) = &mut self.folded
+        {
+            return folded.advance(&self.action.mechanics, F::IS_STRAIGHT, self.action.h(), state);
+        }
         let h = self.action.h();
         let start_of_curve = Array::from_fn(|i| h * state.v[i]);
         let difference = self.solve(state.t, &state.q, &state.p, start_of_curve)?;
@@ -96,7 +108,7 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> OneStep<S> for EviS
             .mechanics()
             .project_momentum(t, &q, &momentum, mean_velocity)
             .map_err(|cause| StepError::Projection { t, cause })?;
-        checked_finite(State { t, q, v, p })
+        state.replace(t, q, v, p)
     }
 }
 
@@ -106,7 +118,7 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
     /// Solves `D₂L_d(q_prev, q_curr) + D₁L_d(q_curr, q_next) − h Gᵀ(q_curr) λ = 0`, `φ(q_next) = 0`.
     ///
     /// # Errors
-    /// [`StepError`] as for [`OneStep::step`].
+    /// [`StepError`] as for [`OneStep::advance`].
     pub fn next_configuration(
         &self,
         t_prev: f64,

@@ -5,6 +5,7 @@
 //! a [`Run`] is a simulation at a state.
 
 mod evi;
+mod multipliers;
 mod run;
 mod simulation;
 #[cfg(feature = "std")]
@@ -42,11 +43,11 @@ pub trait OneStep<S: MechanicalSystem> {
     /// The scene that moves.
     fn mechanics(&self) -> &Mechanics<S>;
 
-    /// The state one step later.
+    /// Overwrites `state` with the state one step later.
     ///
     /// # Errors
-    /// [`StepError`] when there is no such state or it is not found; nothing has changed then.
-    fn step(&self, state: &State<S>) -> Result<State<S>, StepError>;
+    /// [`StepError`] when there is no such state or it is not found; `state` has not changed then.
+    fn advance(&mut self, state: &mut State<S>) -> Result<(), StepError>;
 }
 
 /// A step that could not be taken. The state before the step stands.
@@ -134,12 +135,25 @@ impl IterationFailure {
     }
 }
 
-/// The state, if every number in it is one.
-pub(crate) fn checked_finite<S: MechanicalSystem>(state: State<S>) -> Result<State<S>, StepError> {
-    let numbers = [state.q.as_ref(), state.v.as_ref(), state.p.as_ref()];
-    if numbers.into_iter().flatten().all(|number| number.is_finite()) {
-        Ok(state)
-    } else {
-        Err(StepError::NotFinite { t: state.t })
+impl<S: MechanicalSystem> State<S> {
+    /// Overwrites the state, if every number of the new one is finite.
+    #[inline]
+    pub(crate) fn replace(
+        &mut self,
+        t: f64,
+        q: S::PerCoordinate<f64>,
+        v: S::PerCoordinate<f64>,
+        p: S::PerCoordinate<f64>,
+    ) -> Result<(), StepError> {
+        // A sum is finite only if all of its terms are; only numbers near the largest one overflow together.
+        let mut sum = 0.0;
+        for i in 0..S::N_COORDINATES {
+            sum += q[i] + v[i] + p[i];
+        }
+        if !sum.is_finite() {
+            return Err(StepError::NotFinite { t });
+        }
+        *self = Self { t, q, v, p };
+        Ok(())
     }
 }

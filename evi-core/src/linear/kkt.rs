@@ -64,16 +64,29 @@ impl<S: MechanicalSystem> Kkt<S> {
         }
     }
 
-    /// Scales and factors the matrix.
+    /// Scales and factors the matrix by the scene's own elimination.
     #[inline]
-    pub(crate) fn factor(mut self) -> Result<FactoredKkt<S>, SingularMatrix> {
+    pub(crate) fn factor(self) -> Result<FactoredKkt<S>, SingularMatrix> {
+        self.factor_with()
+    }
+
+    /// Scales and factors a matrix that may have entries outside of the scene's pattern.
+    pub(crate) fn factor_densely(self) -> Result<FactoredKkt<S, S::DenseKktFactors>, SingularMatrix> {
+        self.factor_with()
+    }
+
+    #[inline]
+    fn factor_with<F>(mut self) -> Result<FactoredKkt<S, F>, SingularMatrix>
+    where
+        F: Factorization<S::PerUnknown<f64>, S::PerUnknown<S::PerUnknown<f64>>>,
+    {
         let scale = self.scale();
         for row in 0..S::PerUnknown::<f64>::LEN {
             for col in 0..S::PerUnknown::<f64>::LEN {
                 self.rows[row][col] *= scale[row] * scale[col];
             }
         }
-        Ok(FactoredKkt { factors: S::KktFactors::factor(&self.rows)?, scale })
+        Ok(FactoredKkt { factors: F::factor(&self.rows)?, scale })
     }
 
     /// The diagonal `D`: `1/√|Aᵢᵢ|` for a coordinate, `1/‖√A⁻¹ G₀ᵀ eᵢ‖` for a constraint, as powers of two.
@@ -100,12 +113,16 @@ impl<S: MechanicalSystem> Kkt<S> {
 }
 
 /// A factored saddle-point matrix.
-pub(crate) struct FactoredKkt<S: MechanicalSystem> {
-    factors: S::KktFactors,
+pub(crate) struct FactoredKkt<S: MechanicalSystem, F = <S as MechanicalSystem>::KktFactors> {
+    factors: F,
     scale: S::PerUnknown<f64>,
 }
 
-impl<S: MechanicalSystem> FactoredKkt<S> {
+impl<S, F> FactoredKkt<S, F>
+where
+    S: MechanicalSystem,
+    F: Factorization<S::PerUnknown<f64>, S::PerUnknown<S::PerUnknown<f64>>>,
+{
     /// Overwrites the right-hand side `(a, b)` with the solution `(x, y)`.
     #[inline]
     pub(crate) fn solve(&self, rhs: &mut S::PerUnknown<f64>) {
@@ -242,8 +259,8 @@ mod tests {
     #[test]
     fn without_scaling_the_same_matrix_looks_singular() {
         let matrix = kkt(&Chain { m1: 1e-12, m2: 1e12, unit: 1e-9 });
-        assert!(<Chain as MechanicalSystem>::KktFactors::factor(&matrix.rows).is_err());
-        assert!(matrix.factor().is_ok());
+        assert!(<Chain as MechanicalSystem>::DenseKktFactors::factor(&matrix.rows).is_err());
+        assert!(matrix.factor_densely().is_ok());
     }
 
     #[test]

@@ -3,10 +3,14 @@
 //! [`Factorization`] is the contract between the integrators and a scene's own elimination. What stands here for
 //! every scene is the pivoted dense one, [`DenseLu`].
 
+mod closed_form;
 mod dense;
+mod elimination;
 mod kkt;
 
+pub use closed_form::{Inverse0, Inverse1, Inverse2};
 pub use dense::DenseLu;
+pub use elimination::{Elimination, Guarded, reciprocal_pivot};
 pub(crate) use kkt::{FactoredKkt, Kkt, constraint_index, unknowns};
 
 /// Factors of a square matrix `A`.

@@ -1,19 +1,23 @@
 //! Mechanics of a scene in continuous and discrete time, without a step size policy or an iteration of steps.
 //!
 //! In: a scene's kernels and their constants. Out: energies, momenta, projections, accelerations with multipliers
-//! ([`Mechanics`]), and the equations of one step (`DiscreteLagrangian`).
+//! ([`Mechanics`]), the equations of one step (`DiscreteLagrangian`), and for quadratic Lagrangians the step itself
+//! but for its constraints (`FoldedStep`).
 
+mod constraints;
+mod folded_step;
 mod momentum;
 mod observables;
 mod state;
 mod step_equations;
 
+pub(crate) use constraints::Directions;
+pub(crate) use folded_step::FoldedStep;
 pub use momentum::{Acceleration, ProjectionError};
 pub(crate) use momentum::{Projected, relative};
 pub use state::State;
-pub(crate) use step_equations::{DiscreteLagrangian, StepStart};
+pub(crate) use step_equations::{DiscreteLagrangian, Slot, StepStart};
 
-use crate::array::Array;
 use crate::linear::Kkt;
 use crate::system::MechanicalSystem;
 
@@ -48,30 +52,5 @@ impl<S: MechanicalSystem> Mechanics<S> {
         kkt.set_upper_jacobian(self.constants.as_ref(), jacobian);
         kkt.set_lower_jacobian(self.constants.as_ref(), jacobian);
         kkt
-    }
-
-    /// Adds `Gᵀ x` to `sum`.
-    #[inline]
-    pub(crate) fn add_constraint_force(&self, jacobian: &[f64], x: &[f64], sum: &mut [f64]) {
-        for entry in S::STRUCTURE.jacobian.q {
-            sum[entry.col] += entry.value(self.constants.as_ref(), jacobian) * x[entry.row];
-        }
-    }
-
-    /// `G v + ∂φ/∂t`: the rate at which a motion leaves the constraints.
-    #[inline]
-    pub(crate) fn constraint_rate(
-        &self,
-        jacobian: &[f64],
-        v: &S::PerCoordinate<f64>,
-    ) -> S::PerConstraint<f64> {
-        let mut rate = S::PerConstraint::<f64>::from_fn(|_| 0.0);
-        for entry in S::STRUCTURE.jacobian.t {
-            rate[entry.row] += entry.value(self.constants.as_ref(), jacobian);
-        }
-        for entry in S::STRUCTURE.jacobian.q {
-            rate[entry.row] += entry.value(self.constants.as_ref(), jacobian) * v[entry.col];
-        }
-        rate
     }
 }

@@ -121,7 +121,7 @@ impl<S: MechanicalSystem> Mechanics<S> {
             let (residual, jacobian) = S::constraint_derivatives(&self.constants, t, &q);
             let mut kkt = self.mass_kkt(hessian.as_ref(), jacobian.as_ref());
             self.add_constraint_hessian(t, &q, &multipliers, &mut kkt);
-            let kkt = kkt.factor()?;
+            let kkt = kkt.factor_densely()?;
             let displacement = S::PerCoordinate::<f64>::from_fn(|i| q[i] - start[i]);
             let mut pull = self.mass_times(hessian.as_ref(), &displacement);
             self.add_constraint_force(jacobian.as_ref(), multipliers.as_ref(), pull.as_mut());

@@ -38,6 +38,23 @@ pub(crate) struct StepStart<'a, S: MechanicalSystem> {
     pub(crate) jacobian: S::PerJacobianEntry<f64>,
 }
 
+/// How the position and the velocity times `h` at a node depend on one of the arguments of a step.
+#[derive(Clone, Copy)]
+pub(crate) struct Slot {
+    position: fn(&NodeCoefficients) -> f64,
+    rate: fn(&NodeCoefficients) -> f64,
+}
+
+impl Slot {
+    /// `q₀` at fixed `q₁`.
+    pub(crate) const START: Self =
+        Self { position: NodeCoefficients::start, rate: NodeCoefficients::start_rate };
+    /// `q₁` at fixed `q₀`, which is `d` at fixed `q₀`.
+    pub(crate) const END: Self = Self { position: NodeCoefficients::end, rate: NodeCoefficients::end_rate };
+    /// `q₀` at fixed `d`: both ends move together.
+    pub(crate) const BOTH: Self = Self { position: |c| c.even, rate: |c| c.even_rate };
+}
+
 impl<S: MechanicalSystem, T: InterpolationTable, const K: usize> DiscreteLagrangian<S, T, K> {
     pub(crate) fn new(mechanics: Mechanics<S>, table: T, quadrature: Quadrature<K>, h: f64) -> Self {
         Self { mechanics, table, quadrature, h }
@@ -104,7 +121,7 @@ impl<S: MechanicalSystem, T: InterpolationTable, const K: usize> DiscreteLagrang
 
     /// Calls `visit(node, weight, t, x, v)` at every node of the interpolant from `q` to `q + difference`.
     #[inline]
-    fn for_each_node(
+    pub(crate) fn for_each_node(
         &self,
         t: f64,
         q: &S::PerCoordinate<f64>,
@@ -136,36 +153,60 @@ impl<S: MechanicalSystem, T: InterpolationTable, const K: usize> DiscreteLagrang
         }
     }
 
-    /// Subtracts this node's part of `h D₁D₂L_d`, entry by entry of the Hessian's pattern:
-    /// `wⱼ (h² g₁ L_qq g₂ + h g₁ L_qv hg₂' + h hg₁' L_vq g₂ + hg₁' L_vv hg₂')`.
+    /// Subtracts this node's part of `h D₁D₂L_d`.
     #[inline]
     fn subtract_d2d1(&self, node: usize, weight: f64, hessian: &[f64], kkt: &mut Kkt<S>) {
+        self.for_each_second_derivative(node, weight, hessian, Slot::START, Slot::END, |row, col, value| {
+            kkt.add_block(row, col, -value);
+        });
+    }
+
+    /// Calls `add(row, col, value)` for this node's part of the second derivative of `h L_d` by two slots,
+    /// entry by entry of the Hessian's pattern:
+    /// `wⱼ (h² a L_qq b + h a L_qv b' + h a' L_vq b + a' L_vv b')`, where `a` and `a'` say how position and
+    /// velocity times `h` at the node depend on the first slot, `b` and `b'` on the second.
+    #[inline]
+    pub(crate) fn for_each_second_derivative(
+        &self,
+        node: usize,
+        weight: f64,
+        hessian: &[f64],
+        first: Slot,
+        second: Slot,
+        mut add: impl FnMut(usize, usize, f64),
+    ) {
         let constants = self.mechanics.constants.as_ref();
         let pattern = S::STRUCTURE.hessian;
         let h = self.h;
         for entry in pattern.qq {
             let value = weight * h * h * entry.value(constants, hessian);
             let (row, col) = self.coefficients_of(node, entry.row, entry.col);
-            kkt.add_block(entry.row, entry.col, -row.start() * value * col.end());
+            add(entry.row, entry.col, (first.position)(&row) * value * (second.position)(&col));
             if entry.row != entry.col {
-                kkt.add_block(entry.col, entry.row, -col.start() * value * row.end());
+                add(entry.col, entry.row, (first.position)(&col) * value * (second.position)(&row));
             }
         }
         for entry in pattern.vq {
             let value = weight * h * entry.value(constants, hessian);
             let (row, col) = self.coefficients_of(node, entry.row, entry.col);
-            kkt.add_block(entry.row, entry.col, -row.start_rate() * value * col.end());
+            add(entry.row, entry.col, (first.rate)(&row) * value * (second.position)(&col));
             // ∂²L/∂q∂v is the transpose: its row is the coordinate, its column the velocity.
-            kkt.add_block(entry.col, entry.row, -col.start() * value * row.end_rate());
+            add(entry.col, entry.row, (first.position)(&col) * value * (second.rate)(&row));
         }
         for entry in pattern.vv {
             let value = weight * entry.value(constants, hessian);
             let (row, col) = self.coefficients_of(node, entry.row, entry.col);
-            kkt.add_block(entry.row, entry.col, -row.start_rate() * value * col.end_rate());
+            add(entry.row, entry.col, (first.rate)(&row) * value * (second.rate)(&col));
             if entry.row != entry.col {
-                kkt.add_block(entry.col, entry.row, -col.start_rate() * value * row.end_rate());
+                add(entry.col, entry.row, (first.rate)(&col) * value * (second.rate)(&row));
             }
         }
+    }
+
+    /// The interpolant's coefficients at a node for a coordinate.
+    #[inline]
+    pub(crate) fn coefficients(&self, node: usize, coordinate: usize) -> NodeCoefficients {
+        self.table.coefficients(node, coordinate)
     }
 
     #[inline]

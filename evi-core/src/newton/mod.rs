@@ -29,10 +29,54 @@ pub(crate) struct NotConverged {
     pub(crate) last_correction: f64,
 }
 
-/// Applies corrections of relative length `r₁, r₂, ...` until `rₖ · min(1, rₖ / rₖ₋₁)` is below round-off.
-///
-/// The product predicts the next correction of a linearly convergent iteration, and overestimates it for a
-/// quadratically convergent one; the correction that meets the rule has been applied.
+/// The corrections of an iteration so far.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Progress {
+    corrections: usize,
+    /// Relative length of the last correction; 0 before the first.
+    previous: f64,
+}
+
+impl Progress {
+    /// Whether the iteration has converged with a correction of relative length `rₖ`, which has been applied:
+    /// `rₖ · min(1, rₖ / rₖ₋₁)` is below round-off. The product predicts the next correction of a linearly convergent iteration, and
+    /// overestimates it for a quadratically convergent one.
+    ///
+    /// # Errors
+    /// [`NotConverged`] when the iteration has left the numbers or takes too long.
+    #[inline(always)]
+    pub(crate) fn has_converged(&mut self, length: f64) -> Result<bool, NotConverged> {
+        self.corrections += 1;
+        let previous = core::mem::replace(&mut self.previous, length);
+        // The product above, without a division.
+        if length <= TARGET || (length < previous && length * length <= TARGET * previous) {
+            return Ok(true);
+        }
+        if length <= STAGNATION_RATIO * previous && self.corrections < MAX_CORRECTIONS {
+            return Ok(false);
+        }
+        self.is_stuck(length, previous)
+    }
+
+    /// Whether an iteration that hardly proceeds has reached round-off.
+    #[cold]
+    fn is_stuck(&self, length: f64, previous: f64) -> Result<bool, NotConverged> {
+        if length <= STAGNATION && previous > 0.0 {
+            Ok(true)
+        } else if length.is_finite() && self.corrections < MAX_CORRECTIONS {
+            Ok(false)
+        } else {
+            Err(NotConverged { corrections: self.corrections, last_correction: length })
+        }
+    }
+
+    /// Number of corrections applied.
+    pub(crate) const fn corrections(&self) -> usize {
+        self.corrections
+    }
+}
+
+/// Applies corrections until they have converged; returns their number.
 ///
 /// # Errors
 /// `E` from `correct`, or what `E` makes of [`NotConverged`].
@@ -40,24 +84,13 @@ pub(crate) struct NotConverged {
 pub(crate) fn iterate<E: From<NotConverged>>(
     mut correct: impl FnMut(usize) -> Result<f64, E>,
 ) -> Result<Converged, E> {
-    let mut previous: Option<f64> = None;
-    for corrections in 1..=MAX_CORRECTIONS {
-        let length = correct(corrections)?;
-        if !length.is_finite() {
-            return Err(NotConverged { corrections, last_correction: length }.into());
+    let mut progress = Progress::default();
+    loop {
+        let length = correct(progress.corrections + 1)?;
+        if progress.has_converged(length)? {
+            return Ok(Converged { corrections: progress.corrections });
         }
-        let ratio = previous.map_or(1.0, |previous| length / previous);
-        // A vanishing correction gives 0/0 above: it has converged, whatever went before.
-        if length == 0.0 || length * ratio.min(1.0) <= TARGET {
-            return Ok(Converged { corrections });
-        }
-        if length <= STAGNATION && ratio > STAGNATION_RATIO && previous.is_some() {
-            return Ok(Converged { corrections });
-        }
-        previous = Some(length);
     }
-    let last_correction = previous.unwrap_or(f64::NAN);
-    Err(NotConverged { corrections: MAX_CORRECTIONS, last_correction }.into())
 }
 
 #[cfg(test)]

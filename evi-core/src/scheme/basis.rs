@@ -130,6 +130,9 @@ pub trait InterpolationTable {
 
 /// A family of curves between two configurations, one frequency per coordinate.
 pub trait Interpolant<S: MechanicalSystem> {
+    /// Whether the curves are straight lines, known at compile time.
+    const IS_STRAIGHT: bool = false;
+
     /// The coefficients at `K` nodes.
     type Table<const K: usize>: InterpolationTable;
 
@@ -149,6 +152,8 @@ pub trait Interpolant<S: MechanicalSystem> {
 pub struct Linear;
 
 impl<S: MechanicalSystem> Interpolant<S> for Linear {
+    const IS_STRAIGHT: bool = true;
+
     type Table<const K: usize> = LinearTable<K>;
 
     fn table<const K: usize>(

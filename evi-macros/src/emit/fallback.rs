@@ -3,7 +3,7 @@
 use proc_macro2::{Delimiter, Group, TokenStream};
 use quote::{quote, quote_spanned};
 
-use super::storage::{Sizes, associated_types};
+use super::storage::{Sizes, associated_types, dense_solvers};
 use crate::diagnostics::{Diagnostics, Mistake};
 use crate::model::{constraint_names, coordinate_names};
 use crate::syntax::Declaration;
@@ -28,6 +28,7 @@ pub(crate) fn fallback(declaration: &Declaration, diagnostics: &Diagnostics) -> 
         n_jacobian_entries: 0,
     };
     let types = associated_types(&sizes);
+    let solvers = dense_solvers(sizes.n_coordinates, sizes.n_constraints);
     let (n_coordinates, n_constraints) = (sizes.n_coordinates, sizes.n_constraints);
     quote! {
         #errors
@@ -42,6 +43,7 @@ pub(crate) fn fallback(declaration: &Declaration, diagnostics: &Diagnostics) -> 
                 const PARAMETERS: &'static [&'static str] = &[];
                 const STRUCTURE: ::evi_core::__private::Structure = ::evi_core::__private::Structure::UNKNOWN;
                 #types
+                #solvers
 
                 fn parameters(&self) -> Self::PerParameter<f64> {
                     ::core::unimplemented!()

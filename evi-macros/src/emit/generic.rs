@@ -3,7 +3,7 @@
 //! Only numbers, constants, `der(..)` and the spelling of names are rewritten. Nothing of the graph is used: this copy is
 //! the oracle that the kernels are tested against.
 
-use proc_macro2::{Group, Ident, Literal, TokenStream, TokenTree};
+use proc_macro2::{Group, Ident, Literal, Span, TokenStream, TokenTree};
 use quote::{ToTokens, format_ident, quote, quote_spanned};
 
 use crate::model::{LagrangianSource, Model};
@@ -85,13 +85,14 @@ pub(super) fn generic_system(declaration: &Declaration, model: &Model) -> TokenS
     }
 }
 
-/// The variable for a name of the user. Not the name itself: a binding cannot have the name of a constant in scope.
+/// The variable for a name of the user. Not the name itself: a binding cannot have the name of a constant in scope, and
+/// parts of a struct that a macro wrote would not see each other's.
 fn local_name(name: &Ident) -> Ident {
-    format_ident!("__name_{}", name, span = name.span())
+    format_ident!("__name_{}", name, span = name.span().resolved_at(Span::call_site()))
 }
 
 fn velocity_name(coordinate: &Ident) -> Ident {
-    format_ident!("__der_{}", coordinate, span = coordinate.span())
+    format_ident!("__der_{}", coordinate, span = coordinate.span().resolved_at(Span::call_site()))
 }
 
 /// Rewrites the tokens of an expression for the scalar `T`.

@@ -3,13 +3,14 @@
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 
+use super::elimination::elimination_type;
 use super::generic::generic_system;
 use super::kernel::Writer;
 use super::storage::{Sizes, associated_types};
 use crate::expr::{Dependence, Graph};
 use crate::model::Model;
 use crate::schedule::{ConstantSlots, Operations, Program, Programs};
-use crate::structure::{Entry, EntryValue};
+use crate::structure::{Elimination, Entry, EntryValue, Structure};
 use crate::syntax::Declaration;
 
 /// Everything that the derive emits for a well-formed struct.
@@ -32,6 +33,7 @@ pub(crate) fn implementation(
         n_jacobian_entries: programs.structure.jacobian_entries.len(),
     };
     let types = associated_types(&sizes);
+    let (solver_types, solvers) = solvers(&sizes, &programs.structure);
     let fields = model.parameters.iter().map(|&field| &declaration.fields[field].name);
     let kernels = Kernels { graph, model, slots: &programs.slots };
     let kernels = [
@@ -45,12 +47,15 @@ pub(crate) fn implementation(
     ];
     quote! {
         const _: () = {
+            #solver_types
+
             #[automatically_derived]
             #[allow(unused_variables, unused_parens, trivial_numeric_casts, clippy::all)]
             impl ::evi_core::__private::MechanicalSystem for #struct_name {
                 #names
                 #structure
                 #types
+                #solvers
 
                 #[inline]
                 fn parameters(&self) -> Self::PerParameter<f64> {
@@ -62,6 +67,38 @@ pub(crate) fn implementation(
 
             #generic_system
         };
+    }
+}
+
+/// The scene's own eliminations, as types and as the associated types that name them.
+fn solvers(sizes: &Sizes, structure: &Structure) -> (TokenStream, TokenStream) {
+    let (n, m) = (sizes.n_coordinates, sizes.n_constraints);
+    let (kkt_type, kkt) = solver("KktElimination", n + m, structure.kkt_elimination(n, m));
+    let (mass_type, mass) = solver("MassElimination", n, structure.mass_elimination(n));
+    let (gram_type, gram) = solver("GramElimination", m, structure.gram_elimination(m));
+    let associated = quote! {
+        type KktFactors = #kkt;
+        type MassFactors = #mass;
+        type GramFactors = #gram;
+    };
+    (quote!(#kkt_type #mass_type #gram_type), associated)
+}
+
+/// The type that solves systems of one pattern, and its definition if it is the scene's own.
+fn solver(name: &str, dimension: usize, elimination: Option<Elimination>) -> (TokenStream, TokenStream) {
+    /// Beyond so many multiplications straight-line code is larger than its gain; loops solve densely.
+    const LARGEST_UNROLLED: usize = 1500;
+    let name = quote::format_ident!("{name}");
+    match (dimension, elimination) {
+        (0..=2, _) => {
+            let closed_form = quote::format_ident!("Inverse{dimension}");
+            (TokenStream::new(), quote!(::evi_core::__private::#closed_form))
+        }
+        (_, Some(elimination)) if elimination.cost() <= LARGEST_UNROLLED => {
+            let guarded = quote!(::evi_core::__private::Guarded<#name, #dimension>);
+            (elimination_type(&name, &elimination), guarded)
+        }
+        _ => (TokenStream::new(), quote!(::evi_core::__private::DenseLu<#dimension>)),
     }
 }
 

@@ -2,6 +2,7 @@
 //!
 //! Emitted code names `::evi_core::__private` and its own items, nothing else, and stands in an anonymous constant.
 
+mod elimination;
 mod fallback;
 mod generic;
 mod implementation;

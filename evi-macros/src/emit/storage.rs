@@ -32,6 +32,14 @@ pub(super) fn associated_types(sizes: &Sizes) -> TokenStream {
         type PerConstant<X: ::core::clone::Clone> = [X; #n_constants];
         type PerHessianEntry<X: ::core::clone::Clone> = [X; #n_hessian_entries];
         type PerJacobianEntry<X: ::core::clone::Clone> = [X; #n_jacobian_entries];
+        type DenseKktFactors = ::evi_core::__private::DenseLu<#n_unknowns>;
+    }
+}
+
+/// The solvers of a system whose equations are not known.
+pub(super) fn dense_solvers(n_coordinates: usize, n_constraints: usize) -> TokenStream {
+    let n_unknowns = n_coordinates + n_constraints;
+    quote! {
         type KktFactors = ::evi_core::__private::DenseLu<#n_unknowns>;
         type MassFactors = ::evi_core::__private::DenseLu<#n_coordinates>;
         type GramFactors = ::evi_core::__private::DenseLu<#n_constraints>;

@@ -8,6 +8,145 @@
 // constraint_curvature       4   8   0   0
 
 const _: () = {
+    #[doc(hidden)]
+    pub struct KktElimination {
+        e: [f64; 20usize],
+    }
+    #[automatically_derived]
+    #[allow(clippy::all)]
+    impl ::evi_core::__private::Elimination<6usize> for KktElimination {
+        #[inline]
+        fn factor(m: &[[f64; 6usize]; 6usize]) -> ::core::option::Option<Self> {
+            let mut e = [0.0_f64; 20usize];
+            let mut s = [0.0_f64; 6usize];
+            e[6usize] = m[0usize][0usize];
+            e[8usize] = m[0usize][4usize];
+            e[10usize] = m[0usize][5usize];
+            e[11usize] = m[1usize][1usize];
+            e[13usize] = m[1usize][4usize];
+            e[15usize] = m[1usize][5usize];
+            e[0usize] = m[2usize][2usize];
+            e[2usize] = m[2usize][5usize];
+            e[3usize] = m[3usize][3usize];
+            e[5usize] = m[3usize][5usize];
+            e[7usize] = m[4usize][0usize];
+            e[12usize] = m[4usize][1usize];
+            e[9usize] = m[5usize][0usize];
+            e[14usize] = m[5usize][1usize];
+            e[1usize] = m[5usize][2usize];
+            e[4usize] = m[5usize][3usize];
+            s[0usize] = e[6usize].abs();
+            s[1usize] = e[11usize].abs();
+            s[2usize] = e[0usize].abs();
+            s[3usize] = e[3usize].abs();
+            e[0usize] = ::evi_core::__private::reciprocal_pivot(e[0usize], s[2usize])?;
+            e[1usize] *= e[0usize];
+            {
+                let update = e[1usize] * e[2usize];
+                e[19usize] -= update;
+                s[5usize] += update.abs();
+            }
+            e[3usize] = ::evi_core::__private::reciprocal_pivot(e[3usize], s[3usize])?;
+            e[4usize] *= e[3usize];
+            {
+                let update = e[4usize] * e[5usize];
+                e[19usize] -= update;
+                s[5usize] += update.abs();
+            }
+            e[6usize] = ::evi_core::__private::reciprocal_pivot(e[6usize], s[0usize])?;
+            e[7usize] *= e[6usize];
+            e[9usize] *= e[6usize];
+            {
+                let update = e[7usize] * e[8usize];
+                e[16usize] -= update;
+                s[4usize] += update.abs();
+            }
+            e[18usize] -= e[7usize] * e[10usize];
+            e[17usize] -= e[9usize] * e[8usize];
+            {
+                let update = e[9usize] * e[10usize];
+                e[19usize] -= update;
+                s[5usize] += update.abs();
+            }
+            e[11usize] = ::evi_core::__private::reciprocal_pivot(e[11usize], s[1usize])?;
+            e[12usize] *= e[11usize];
+            e[14usize] *= e[11usize];
+            {
+                let update = e[12usize] * e[13usize];
+                e[16usize] -= update;
+                s[4usize] += update.abs();
+            }
+            e[18usize] -= e[12usize] * e[15usize];
+            e[17usize] -= e[14usize] * e[13usize];
+            {
+                let update = e[14usize] * e[15usize];
+                e[19usize] -= update;
+                s[5usize] += update.abs();
+            }
+            e[16usize] = ::evi_core::__private::reciprocal_pivot(e[16usize], s[4usize])?;
+            e[17usize] *= e[16usize];
+            {
+                let update = e[17usize] * e[18usize];
+                e[19usize] -= update;
+                s[5usize] += update.abs();
+            }
+            e[19usize] = ::evi_core::__private::reciprocal_pivot(e[19usize], s[5usize])?;
+            ::core::option::Option::Some(Self { e })
+        }
+        #[inline]
+        fn solve(&self, b: &mut [f64; 6usize]) {
+            let e = &self.e;
+            b[5usize] -= e[1usize] * b[2usize];
+            b[5usize] -= e[4usize] * b[3usize];
+            b[4usize] -= e[7usize] * b[0usize];
+            b[5usize] -= e[9usize] * b[0usize];
+            b[4usize] -= e[12usize] * b[1usize];
+            b[5usize] -= e[14usize] * b[1usize];
+            b[5usize] -= e[17usize] * b[4usize];
+            b[5usize] = (b[5usize]) * e[19usize];
+            b[4usize] = (b[4usize] - e[18usize] * b[5usize]) * e[16usize];
+            b[1usize] = (b[1usize] - e[13usize] * b[4usize] - e[15usize] * b[5usize])
+                * e[11usize];
+            b[0usize] = (b[0usize] - e[8usize] * b[4usize] - e[10usize] * b[5usize])
+                * e[6usize];
+            b[3usize] = (b[3usize] - e[5usize] * b[5usize]) * e[3usize];
+            b[2usize] = (b[2usize] - e[2usize] * b[5usize]) * e[0usize];
+        }
+    }
+    #[doc(hidden)]
+    pub struct MassElimination {
+        e: [f64; 4usize],
+    }
+    #[automatically_derived]
+    #[allow(clippy::all)]
+    impl ::evi_core::__private::Elimination<4usize> for MassElimination {
+        #[inline]
+        fn factor(m: &[[f64; 4usize]; 4usize]) -> ::core::option::Option<Self> {
+            let mut e = [0.0_f64; 4usize];
+            let mut s = [0.0_f64; 4usize];
+            e[0usize] = m[0usize][0usize];
+            e[1usize] = m[1usize][1usize];
+            e[2usize] = m[2usize][2usize];
+            e[3usize] = m[3usize][3usize];
+            s[0usize] = e[0usize].abs();
+            s[1usize] = e[1usize].abs();
+            s[2usize] = e[2usize].abs();
+            s[3usize] = e[3usize].abs();
+            e[0usize] = ::evi_core::__private::reciprocal_pivot(e[0usize], s[0usize])?;
+            e[1usize] = ::evi_core::__private::reciprocal_pivot(e[1usize], s[1usize])?;
+            e[2usize] = ::evi_core::__private::reciprocal_pivot(e[2usize], s[2usize])?;
+            e[3usize] = ::evi_core::__private::reciprocal_pivot(e[3usize], s[3usize])?;
+            ::core::option::Option::Some(Self { e })
+        }
+        #[inline]
+        fn solve(&self, b: &mut [f64; 4usize]) {
+            let e = &self.e;
+            b[3usize] = (b[3usize]) * e[3usize];
+            b[2usize] = (b[2usize]) * e[2usize];
+            b[1usize] = (b[1usize]) * e[1usize];
+            b[0usize] = (b[0usize]) * e[0usize];
+        }
+    }
     #[automatically_derived]
     #[allow(unused_variables, unused_parens, trivial_numeric_casts, clippy::all)]
     impl ::evi_core::__private::MechanicalSystem for DoublePendulum {
@@ -144,9 +283,10 @@ const _: () = {
         type PerConstant<X: ::core::clone::Clone> = [X; 9usize];
         type PerHessianEntry<X: ::core::clone::Clone> = [X; 0usize];
         type PerJacobianEntry<X: ::core::clone::Clone> = [X; 6usize];
-        type KktFactors = ::evi_core::__private::DenseLu<6usize>;
-        type MassFactors = ::evi_core::__private::DenseLu<4usize>;
-        type GramFactors = ::evi_core::__private::DenseLu<2usize>;
+        type DenseKktFactors = ::evi_core::__private::DenseLu<6usize>;
+        type KktFactors = ::evi_core::__private::Guarded<KktElimination, 6usize>;
+        type MassFactors = ::evi_core::__private::Guarded<MassElimination, 4usize>;
+        type GramFactors = ::evi_core::__private::Inverse2;
         #[inline]
         fn parameters(&self) -> Self::PerParameter<f64> {
             [self.m1, self.m2, self.l1, self.l2, self.g]

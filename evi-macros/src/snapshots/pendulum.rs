@@ -104,9 +104,10 @@ const _: () = {
         type PerConstant<X: ::core::clone::Clone> = [X; 3usize];
         type PerHessianEntry<X: ::core::clone::Clone> = [X; 1usize];
         type PerJacobianEntry<X: ::core::clone::Clone> = [X; 0usize];
-        type KktFactors = ::evi_core::__private::DenseLu<1usize>;
-        type MassFactors = ::evi_core::__private::DenseLu<1usize>;
-        type GramFactors = ::evi_core::__private::DenseLu<0usize>;
+        type DenseKktFactors = ::evi_core::__private::DenseLu<1usize>;
+        type KktFactors = ::evi_core::__private::Inverse1;
+        type MassFactors = ::evi_core::__private::Inverse1;
+        type GramFactors = ::evi_core::__private::Inverse0;
         #[inline]
         fn parameters(&self) -> Self::PerParameter<f64> {
             [self.m, self.l, self.g]

@@ -8,6 +8,95 @@
 // constraint_curvature       2   6   0   0
 
 const _: () = {
+    #[doc(hidden)]
+    pub struct KktElimination {
+        e: [f64; 10usize],
+    }
+    #[automatically_derived]
+    #[allow(clippy::all)]
+    impl ::evi_core::__private::Elimination<4usize> for KktElimination {
+        #[inline]
+        fn factor(m: &[[f64; 4usize]; 4usize]) -> ::core::option::Option<Self> {
+            let mut e = [0.0_f64; 10usize];
+            let mut s = [0.0_f64; 4usize];
+            e[0usize] = m[0usize][0usize];
+            e[2usize] = m[0usize][3usize];
+            e[3usize] = m[1usize][1usize];
+            e[5usize] = m[1usize][3usize];
+            e[6usize] = m[2usize][2usize];
+            e[8usize] = m[2usize][3usize];
+            e[1usize] = m[3usize][0usize];
+            e[4usize] = m[3usize][1usize];
+            e[7usize] = m[3usize][2usize];
+            s[0usize] = e[0usize].abs();
+            s[1usize] = e[3usize].abs();
+            s[2usize] = e[6usize].abs();
+            e[0usize] = ::evi_core::__private::reciprocal_pivot(e[0usize], s[0usize])?;
+            e[1usize] *= e[0usize];
+            {
+                let update = e[1usize] * e[2usize];
+                e[9usize] -= update;
+                s[3usize] += update.abs();
+            }
+            e[3usize] = ::evi_core::__private::reciprocal_pivot(e[3usize], s[1usize])?;
+            e[4usize] *= e[3usize];
+            {
+                let update = e[4usize] * e[5usize];
+                e[9usize] -= update;
+                s[3usize] += update.abs();
+            }
+            e[6usize] = ::evi_core::__private::reciprocal_pivot(e[6usize], s[2usize])?;
+            e[7usize] *= e[6usize];
+            {
+                let update = e[7usize] * e[8usize];
+                e[9usize] -= update;
+                s[3usize] += update.abs();
+            }
+            e[9usize] = ::evi_core::__private::reciprocal_pivot(e[9usize], s[3usize])?;
+            ::core::option::Option::Some(Self { e })
+        }
+        #[inline]
+        fn solve(&self, b: &mut [f64; 4usize]) {
+            let e = &self.e;
+            b[3usize] -= e[1usize] * b[0usize];
+            b[3usize] -= e[4usize] * b[1usize];
+            b[3usize] -= e[7usize] * b[2usize];
+            b[3usize] = (b[3usize]) * e[9usize];
+            b[2usize] = (b[2usize] - e[8usize] * b[3usize]) * e[6usize];
+            b[1usize] = (b[1usize] - e[5usize] * b[3usize]) * e[3usize];
+            b[0usize] = (b[0usize] - e[2usize] * b[3usize]) * e[0usize];
+        }
+    }
+    #[doc(hidden)]
+    pub struct MassElimination {
+        e: [f64; 3usize],
+    }
+    #[automatically_derived]
+    #[allow(clippy::all)]
+    impl ::evi_core::__private::Elimination<3usize> for MassElimination {
+        #[inline]
+        fn factor(m: &[[f64; 3usize]; 3usize]) -> ::core::option::Option<Self> {
+            let mut e = [0.0_f64; 3usize];
+            let mut s = [0.0_f64; 3usize];
+            e[0usize] = m[0usize][0usize];
+            e[1usize] = m[1usize][1usize];
+            e[2usize] = m[2usize][2usize];
+            s[0usize] = e[0usize].abs();
+            s[1usize] = e[1usize].abs();
+            s[2usize] = e[2usize].abs();
+            e[0usize] = ::evi_core::__private::reciprocal_pivot(e[0usize], s[0usize])?;
+            e[1usize] = ::evi_core::__private::reciprocal_pivot(e[1usize], s[1usize])?;
+            e[2usize] = ::evi_core::__private::reciprocal_pivot(e[2usize], s[2usize])?;
+            ::core::option::Option::Some(Self { e })
+        }
+        #[inline]
+        fn solve(&self, b: &mut [f64; 3usize]) {
+            let e = &self.e;
+            b[2usize] = (b[2usize]) * e[2usize];
+            b[1usize] = (b[1usize]) * e[1usize];
+            b[0usize] = (b[0usize]) * e[0usize];
+        }
+    }
     #[automatically_derived]
     #[allow(unused_variables, unused_parens, trivial_numeric_casts, clippy::all)]
     impl ::evi_core::__private::MechanicalSystem for SphericalPendulum {
@@ -124,9 +213,10 @@ const _: () = {
         type PerConstant<X: ::core::clone::Clone> = [X; 5usize];
         type PerHessianEntry<X: ::core::clone::Clone> = [X; 0usize];
         type PerJacobianEntry<X: ::core::clone::Clone> = [X; 3usize];
-        type KktFactors = ::evi_core::__private::DenseLu<4usize>;
-        type MassFactors = ::evi_core::__private::DenseLu<3usize>;
-        type GramFactors = ::evi_core::__private::DenseLu<1usize>;
+        type DenseKktFactors = ::evi_core::__private::DenseLu<4usize>;
+        type KktFactors = ::evi_core::__private::Guarded<KktElimination, 4usize>;
+        type MassFactors = ::evi_core::__private::Guarded<MassElimination, 3usize>;
+        type GramFactors = ::evi_core::__private::Inverse1;
         #[inline]
         fn parameters(&self) -> Self::PerParameter<f64> {
             [self.m, self.l, self.g]

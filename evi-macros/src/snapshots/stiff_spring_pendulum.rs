@@ -119,9 +119,10 @@ const _: () = {
         type PerConstant<X: ::core::clone::Clone> = [X; 6usize];
         type PerHessianEntry<X: ::core::clone::Clone> = [X; 3usize];
         type PerJacobianEntry<X: ::core::clone::Clone> = [X; 0usize];
-        type KktFactors = ::evi_core::__private::DenseLu<2usize>;
-        type MassFactors = ::evi_core::__private::DenseLu<2usize>;
-        type GramFactors = ::evi_core::__private::DenseLu<0usize>;
+        type DenseKktFactors = ::evi_core::__private::DenseLu<2usize>;
+        type KktFactors = ::evi_core::__private::Inverse2;
+        type MassFactors = ::evi_core::__private::Inverse2;
+        type GramFactors = ::evi_core::__private::Inverse0;
         #[inline]
         fn parameters(&self) -> Self::PerParameter<f64> {
             [self.m, self.l, self.k, self.g]

@@ -3,6 +3,12 @@
 //! In: [`Equations`]. Out: for every nonzero second derivative of `L` and first derivative of `φ` its place, and whether
 //! its value is computed once from the parameters or by a kernel.
 
+mod elimination;
+
+use std::collections::BTreeSet;
+
+pub(crate) use elimination::Elimination;
+
 use crate::expr::{Dependence, ExprId, Graph};
 use crate::mechanics::{Equations, Partial};
 
@@ -95,4 +101,40 @@ fn index_of(values: &mut Vec<ExprId>, value: ExprId) -> usize {
         values.push(value);
         values.len() - 1
     })
+}
+
+impl Structure {
+    /// Places of the step matrix `A = −D₁D₂L_d` and its transpose: wherever `L` couples two coordinates.
+    fn coupled_coordinates(&self) -> BTreeSet<(usize, usize)> {
+        let blocks = self.hessian_qq.iter().chain(&self.hessian_vq).chain(&self.hessian_vv);
+        blocks.flat_map(|entry| [(entry.row, entry.col), (entry.col, entry.row)]).collect()
+    }
+
+    /// The elimination of the saddle-point matrix `[A Gᵀ; G 0]`.
+    pub(crate) fn kkt_elimination(&self, n_coordinates: usize, n_constraints: usize) -> Option<Elimination> {
+        let mut entries = self.coupled_coordinates();
+        for entry in &self.jacobian_q {
+            entries.insert((n_coordinates + entry.row, entry.col));
+            entries.insert((entry.col, n_coordinates + entry.row));
+        }
+        Elimination::of(n_coordinates + n_constraints, entries)
+    }
+
+    /// The elimination of the mass matrix, or of a constant step matrix.
+    pub(crate) fn mass_elimination(&self, n_coordinates: usize) -> Option<Elimination> {
+        Elimination::of(n_coordinates, self.coupled_coordinates())
+    }
+
+    /// The elimination of `G A⁻¹ Gᵀ`: constraints are coupled when they share a coordinate, or all of them when `A⁻¹` is full.
+    pub(crate) fn gram_elimination(&self, n_constraints: usize) -> Option<Elimination> {
+        let is_diagonal = self.coupled_coordinates().iter().all(|(row, col)| row == col);
+        let coupled = |first: &Entry, second: &Entry| !is_diagonal || first.col == second.col;
+        let entries = self.jacobian_q.iter().flat_map(|first| {
+            self.jacobian_q
+                .iter()
+                .filter(move |second| coupled(first, second))
+                .map(|second| (first.row, second.row))
+        });
+        Elimination::of(n_constraints, entries.collect())
+    }
 }

@@ -1,0 +1,205 @@
+//! The step of a folded scene: Newton's iteration on the multipliers alone.
+//!
+//! In: a [`FoldedStep`], whose end point is affine in the impulse `L = Λ/h` of the constraint force. Out: the `L` for which
+//! `φ(q₁(L)) = 0`, and the state there. The matrix `h G₁ A⁻¹ G₀ᵀ` is evaluated and factored once per step, at an impulse that
+//! is extrapolated from the previous steps; each further correction costs one evaluation of the constraints.
+
+use super::{IterationFailure, StepError};
+use crate::array::Array;
+use crate::linear::{Factorization, largest_magnitude};
+use crate::mechanics::{Directions, FoldedStep, Mechanics, ProjectionError, State};
+use crate::newton::Progress;
+use crate::system::MechanicalSystem;
+
+/// A folded step with the impulses that it has needed so far.
+pub(crate) struct MultiplierStep<S: MechanicalSystem> {
+    folded: FoldedStep<S>,
+    /// Impulses of the last three steps, newest first: the first guess of the next. They affect the number of
+    /// corrections and the last bits of a state, nothing else.
+    previous: [S::PerConstraint<f64>; 3],
+}
+
+/// The motion of one step as a function of the impulse.
+struct Span<'a, S: MechanicalSystem> {
+    mechanics: &'a Mechanics<S>,
+    start_time: f64,
+    end_time: f64,
+    /// `q₀ + d` without constraint forces.
+    free_end: S::PerCoordinate<f64>,
+    /// `h A⁻¹ G₀ᵀ`.
+    directions: Directions<S>,
+    /// What `φ` is compared with: `1 / Σ |G_ci| (|qᵢ| + |dᵢ|)`.
+    inverse_scale: S::PerConstraint<f64>,
+}
+
+impl<S: MechanicalSystem> MultiplierStep<S> {
+    pub(crate) fn new(folded: FoldedStep<S>) -> Self {
+        Self { folded, previous: core::array::from_fn(|_| Array::from_fn(|_| 0.0)) }
+    }
+
+    /// Overwrites `state` with the state one step of size `h` later.
+    #[inline(always)]
+    pub(crate) fn advance(
+        &mut self,
+        mechanics: &Mechanics<S>,
+        is_straight: bool,
+        h: f64,
+        state: &mut State<S>,
+    ) -> Result<(), StepError> {
+        let t = state.t + h;
+        let mut p = self.folded.kicked_at_start(is_straight, &state.q, &state.p);
+        let free_difference = self.folded.drift(&p);
+        let mut q = Array::from_fn(|i| state.q[i] + free_difference[i]);
+        if S::N_CONSTRAINTS > 0 {
+            let (_, jacobian) = S::constraint_derivatives(&mechanics.constants, state.t, &state.q);
+            let span = Span {
+                directions: mechanics.constraint_directions(&jacobian, |x| self.folded.drift(x)),
+                inverse_scale: mechanics.inverse_constraint_scale(&jacobian, &state.q, &free_difference),
+                mechanics,
+                start_time: state.t,
+                end_time: t,
+                free_end: q,
+            };
+            let impulse = self.solve(&span)?;
+            q = span.end(&impulse);
+            mechanics.subtract_constraint_force(jacobian.as_ref(), impulse.as_ref(), p.as_mut());
+        }
+        p = self.folded.kicked_at_end(is_straight, &q, &p);
+        let mut v = self.folded.velocity(&p);
+        if S::N_CONSTRAINTS > 0 {
+            self.project(mechanics, t, &q, &mut v, &mut p)?;
+        }
+        state.replace(t, q, v, p)
+    }
+
+    /// The impulse that ends the step on the constraints.
+    #[inline(always)]
+    fn solve(&mut self, span: &Span<'_, S>) -> Result<S::PerConstraint<f64>, StepError> {
+        let [newest, older, oldest] = &self.previous;
+        let mut impulse = Array::from_fn(|c| 3.0 * (newest[c] - older[c]) + oldest[c]);
+        if span.solve::<false>(&mut impulse).is_err() {
+            span.solve_anew(&mut impulse)?;
+        }
+        self.previous = [impulse.clone(), newest.clone(), older.clone()];
+        Ok(impulse)
+    }
+
+    /// Removes the impulse `Gᵀ N` that leaves the constraints: `G M⁻¹ Gᵀ N = G v + ∂φ/∂t`.
+    #[inline(always)]
+    fn project(
+        &self,
+        mechanics: &Mechanics<S>,
+        t: f64,
+        q: &S::PerCoordinate<f64>,
+        v: &mut S::PerCoordinate<f64>,
+        p: &mut S::PerCoordinate<f64>,
+    ) -> Result<(), StepError> {
+        let (_, jacobian) = S::constraint_derivatives(&mechanics.constants, t, q);
+        let directions = mechanics.constraint_directions(&jacobian, |x| self.folded.inverse_mass(x));
+        let gram = mechanics
+            .factor_gram(&jacobian, &directions)
+            .map_err(|matrix| StepError::Projection { t, cause: ProjectionError::Singular(matrix) })?;
+        let mut impulse = S::PerConstraint::<f64>::from_fn(|_| 0.0);
+        // Twice: near a turning point `v` is a small difference of large velocities, whose round-off the first time leaves.
+        for _ in 0..2 {
+            let mut part = mechanics.constraint_rate(jacobian.as_ref(), v);
+            gram.solve(&mut part);
+            subtract::<S>(&directions, &part, v);
+            for c in 0..S::N_CONSTRAINTS {
+                impulse[c] += part[c];
+            }
+        }
+        mechanics.subtract_constraint_force(jacobian.as_ref(), impulse.as_ref(), p.as_mut());
+        Ok(())
+    }
+}
+
+impl<S: MechanicalSystem> Span<'_, S> {
+    /// Newton's iteration from the guess `impulse`, which becomes the solution. Its matrix is evaluated at every
+    /// correction if it is to be `FRESH`, else once.
+    #[inline(always)]
+    fn solve<const FRESH: bool>(&self, impulse: &mut S::PerConstraint<f64>) -> Result<(), StepError> {
+        let (mut residual, mut gram) = self.linearize(1, impulse)?;
+        let mut progress = Progress::default();
+        loop {
+            // A sum, in which a NaN survives.
+            let length = (0..S::N_CONSTRAINTS).map(|c| residual[c].abs() * self.inverse_scale[c]).sum();
+            gram.solve(&mut residual);
+            for c in 0..S::N_CONSTRAINTS {
+                impulse[c] += residual[c];
+            }
+            match progress.has_converged(length) {
+                Ok(true) => return Ok(()),
+                Ok(false) => {}
+                Err(failure) => return Err(self.failed(failure.into(), impulse, gram.pivot_ratio())),
+            }
+            if FRESH {
+                (residual, gram) = self.linearize(progress.corrections() + 1, impulse)?;
+            } else {
+                residual = S::constraints(&self.mechanics.constants, self.end_time, &self.end(impulse));
+            }
+        }
+    }
+
+    /// `φ(q₁(L))`, and the factors of its derivative, `−h G₁ A⁻¹ G₀ᵀ`, but for the sign.
+    #[inline]
+    fn linearize(
+        &self,
+        correction: usize,
+        impulse: &S::PerConstraint<f64>,
+    ) -> Result<(S::PerConstraint<f64>, S::GramFactors), StepError> {
+        let end = self.end(impulse);
+        let (residual, jacobian) = S::constraint_derivatives(&self.mechanics.constants, self.end_time, &end);
+        match self.mechanics.factor_gram(&jacobian, &self.directions) {
+            Ok(gram) => Ok((residual, gram)),
+            Err(matrix) => Err(self.failed(IterationFailure::Singular { correction, matrix }, impulse, 0.0)),
+        }
+    }
+
+    /// The numbers that explain a failure.
+    #[cold]
+    fn failed(
+        &self,
+        failure: IterationFailure,
+        impulse: &S::PerConstraint<f64>,
+        pivot_ratio: f64,
+    ) -> StepError {
+        let residual = S::constraints(&self.mechanics.constants, self.end_time, &self.end(impulse));
+        failure.at(self.start_time, largest_magnitude(residual.as_ref().iter().copied()), pivot_ratio)
+    }
+
+    /// Newton's iteration without the history, and with a fresh matrix for every correction.
+    #[cold]
+    fn solve_anew(&self, impulse: &mut S::PerConstraint<f64>) -> Result<(), StepError> {
+        *impulse = Array::from_fn(|_| 0.0);
+        self.solve::<true>(impulse)
+    }
+
+    /// `q₁(L) = q₀ + d_free − h A⁻¹ G₀ᵀ L`.
+    #[inline]
+    fn end(&self, impulse: &S::PerConstraint<f64>) -> S::PerCoordinate<f64> {
+        let mut end = self.free_end.clone();
+        subtract::<S>(&self.directions, impulse, &mut end);
+        end
+    }
+}
+
+/// Subtracts `Σ directions[c] y[c]` from `x`.
+#[inline]
+fn subtract<S: MechanicalSystem>(
+    directions: &Directions<S>,
+    y: &S::PerConstraint<f64>,
+    x: &mut S::PerCoordinate<f64>,
+) {
+    if S::STRUCTURE.is_uncoupled() {
+        for entry in S::STRUCTURE.jacobian.q {
+            x[entry.col] -= directions[entry.row][entry.col] * y[entry.row];
+        }
+    } else {
+        for c in 0..S::N_CONSTRAINTS {
+            for i in 0..S::N_COORDINATES {
+                x[i] -= directions[c][i] * y[c];
+            }
+        }
+    }
+}

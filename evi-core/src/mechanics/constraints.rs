@@ -1,0 +1,100 @@
+//! Products with the constraint Jacobian, entry by entry of its pattern.
+
+use super::Mechanics;
+use crate::array::Array;
+use crate::linear::{Factorization, SingularMatrix};
+use crate::system::MechanicalSystem;
+
+/// `B Gᵀ` for a symmetric matrix `B` over the coordinates, a row per constraint.
+pub(crate) type Directions<S> =
+    <S as MechanicalSystem>::PerConstraint<<S as MechanicalSystem>::PerCoordinate<f64>>;
+
+impl<S: MechanicalSystem> Mechanics<S> {
+    /// Adds `Gᵀ x` to `sum`.
+    #[inline]
+    pub(crate) fn add_constraint_force(&self, jacobian: &[f64], x: &[f64], sum: &mut [f64]) {
+        for entry in S::STRUCTURE.jacobian.q {
+            sum[entry.col] += entry.value(self.constants.as_ref(), jacobian) * x[entry.row];
+        }
+    }
+
+    /// Subtracts `Gᵀ x` from `sum`.
+    #[inline]
+    pub(crate) fn subtract_constraint_force(&self, jacobian: &[f64], x: &[f64], sum: &mut [f64]) {
+        for entry in S::STRUCTURE.jacobian.q {
+            sum[entry.col] -= entry.value(self.constants.as_ref(), jacobian) * x[entry.row];
+        }
+    }
+
+    /// `B Gᵀ` for a symmetric matrix `B`, a row per constraint.
+    #[inline]
+    pub(crate) fn constraint_directions(
+        &self,
+        jacobian: &S::PerJacobianEntry<f64>,
+        matrix: impl Fn(&S::PerCoordinate<f64>) -> S::PerCoordinate<f64>,
+    ) -> Directions<S> {
+        let mut gradients: Directions<S> = Array::from_fn(|_| Array::from_fn(|_| 0.0));
+        for entry in S::STRUCTURE.jacobian.q {
+            gradients[entry.row][entry.col] = entry.value(self.constants.as_ref(), jacobian.as_ref());
+        }
+        Array::from_fn(|c| matrix(&gradients[c]))
+    }
+
+    /// Factors `G D`, where the rows of `directions` are the columns of `D`.
+    #[inline]
+    pub(crate) fn factor_gram(
+        &self,
+        jacobian: &S::PerJacobianEntry<f64>,
+        directions: &Directions<S>,
+    ) -> Result<S::GramFactors, SingularMatrix> {
+        let mut gram: S::PerConstraint<S::PerConstraint<f64>> = Array::from_fn(|_| Array::from_fn(|_| 0.0));
+        for entry in S::STRUCTURE.jacobian.q {
+            let slope = entry.value(self.constants.as_ref(), jacobian.as_ref());
+            if S::STRUCTURE.is_uncoupled() {
+                for other in S::STRUCTURE.jacobian.q {
+                    if other.col == entry.col {
+                        gram[entry.row][other.row] += slope * directions[other.row][other.col];
+                    }
+                }
+            } else {
+                for col in 0..S::N_CONSTRAINTS {
+                    gram[entry.row][col] += slope * directions[col][entry.col];
+                }
+            }
+        }
+        S::GramFactors::factor(&gram)
+    }
+
+    /// `1 / Σᵢ |G_ci| (|qᵢ| + |dᵢ|)`: round-off of `φ_c` at `q + d`, in units of round-off. Zero where nothing moves.
+    #[inline]
+    pub(crate) fn inverse_constraint_scale(
+        &self,
+        jacobian: &S::PerJacobianEntry<f64>,
+        q: &S::PerCoordinate<f64>,
+        difference: &S::PerCoordinate<f64>,
+    ) -> S::PerConstraint<f64> {
+        let mut scale = S::PerConstraint::<f64>::from_fn(|_| 0.0);
+        for entry in S::STRUCTURE.jacobian.q {
+            let slope = entry.value(self.constants.as_ref(), jacobian.as_ref());
+            scale[entry.row] += slope.abs() * (q[entry.col].abs() + difference[entry.col].abs());
+        }
+        Array::from_fn(|c| if scale[c] > 0.0 { 1.0 / scale[c] } else { 0.0 })
+    }
+
+    /// `G v + ∂φ/∂t`: the rate at which a motion leaves the constraints.
+    #[inline]
+    pub(crate) fn constraint_rate(
+        &self,
+        jacobian: &[f64],
+        v: &S::PerCoordinate<f64>,
+    ) -> S::PerConstraint<f64> {
+        let mut rate = S::PerConstraint::<f64>::from_fn(|_| 0.0);
+        for entry in S::STRUCTURE.jacobian.t {
+            rate[entry.row] += entry.value(self.constants.as_ref(), jacobian);
+        }
+        for entry in S::STRUCTURE.jacobian.q {
+            rate[entry.row] += entry.value(self.constants.as_ref(), jacobian) * v[entry.col];
+        }
+        rate
+    }
+}
