@@ -7,6 +7,10 @@ mod dense;
 mod kkt;
 
 pub use dense::DenseLu;
+#[cfg(feature = "generic")]
+pub(crate) use dense::checked_pivot_ratio;
+#[cfg(feature = "generic")]
+pub(crate) use kkt::reciprocal_power_of_two;
 pub(crate) use kkt::{FactoredKkt, Kkt, constraint_index, unknowns};
 
 /// Factors of a square matrix `A`.
