@@ -9,10 +9,11 @@ use num_dual::{Derivative, DualSVec64, HyperDualSVec64};
 /// Infinitesimals per evaluation in each of the two directions.
 ///
 /// Midpoint step with 1, 2, 4, 8: double pendulum (n = 4) 2.74, 4.79, 2.64, 5.33 µs; chain of 5 links (n = 10) 23.9, 21.4,
-/// 14.5, 21.4 µs; of 10 links 177, 128, 60, 80 µs; only at n = 1 is 1 faster (0.30 against 0.56 µs). One node of the
-/// double pendulum by `HyperDual64` entry by entry: 128 ns for the 16 of `D₁D₂L_d`, 283 ns for the 36 of the Hessian
-/// in (q, v); that Hessian by one `Dual2SVec64<8>`: 600 ns; this: 90 ns. (x86-64 with AVX-512, baseline instruction set,
-/// rustc 1.95; a specialised step took 0.9 µs in the same minutes.)
+/// 14.5, 21.4 µs; of 10 links 177, 128, 60, 80 µs; only at n = 1 is 1 faster (0.30 against 0.56 µs). The kernel of one node
+/// alone, on the double pendulum: 120 ns by `HyperDual64` for each of the 16 entries of `D₁D₂L_d` in turn, 80 to 120 ns
+/// by this for all, 280 to 380 ns by `HyperDual64` for the 36 of the Hessian in (q, v), 600 to 1270 ns by one
+/// `Dual2SVec64<8>` for that Hessian. (x86-64, baseline instruction set, rustc 1.95, a shared machine; a specialised step
+/// took 0.9 µs in the same minutes.)
 pub(super) const CHUNK: usize = 4;
 
 /// A number with one chunk of infinitesimals `ε`: first derivatives.
