@@ -4,6 +4,7 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use evi_core::baseline::{Rattle, Rk4};
+use evi_core::generic::{GenericEvi, GenericSystem};
 use evi_core::prelude::*;
 use evi_examples::{DoublePendulum, SphericalPendulum, Start, StiffSpringPendulum};
 
@@ -23,6 +24,8 @@ fn steps(criterion: &mut Criterion) {
     measure(&mut group, "evi_simpson_omega", Simulation::new(pendulum, exponential), start);
     let per_coordinate = Evi::simpson(H).frequencies(frequencies);
     measure(&mut group, "evi_simpson_omega_per_coordinate", Simulation::new(pendulum, per_coordinate), start);
+    measure_generic(&mut group, "generic_midpoint", pendulum, &GenericEvi::midpoint(H), start);
+    measure_generic(&mut group, "generic_simpson", pendulum, &GenericEvi::simpson(H), start);
     measure(&mut group, "rattle", Simulation::new(pendulum, Rattle::new(H)), start);
     measure(&mut group, "rk4", Simulation::new(pendulum, Rk4::new(H)), start);
     let mut run = hand_written::HandWritten::new(&pendulum, start, H);
@@ -55,6 +58,20 @@ fn measure<const N: usize, S, F>(
     let mut run = simulation.start(start.q, start.v).expect("the gallery's starts are consistent");
     group.bench_function(name, |bencher| {
         bencher.iter(|| run.advance().map(State::t).expect("the step sizes are small enough"));
+    });
+}
+
+/// Times the steps of a run of the generic path.
+fn measure_generic<const N: usize, S: GenericSystem>(
+    group: &mut criterion::BenchmarkGroup<'_, criterion::measurement::WallTime>,
+    name: &str,
+    system: S,
+    scheme: &GenericEvi,
+    start: Start<N>,
+) {
+    let mut run = scheme.start(system, &start.q, &start.v).expect("the gallery's starts are consistent");
+    group.bench_function(name, |bencher| {
+        bencher.iter(|| run.advance().expect("the step sizes are small enough"));
     });
 }
 

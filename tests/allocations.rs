@@ -12,6 +12,7 @@ use std::cell::Cell;
 use std::hint::black_box;
 
 use evi_core::baseline::{Rattle, Rk4};
+use evi_core::generic::{GenericEvi, GenericSystem};
 use evi_core::prelude::*;
 use evi_examples::{
     DoublePendulum, HarmonicOscillator, Pendulum, SphericalPendulum, Start, StiffSpringPendulum,
@@ -142,6 +143,22 @@ fn no_step_of_a_baseline_allocates() {
     check(DOUBLE, Rk4::new(0.01), mild());
     check(SPHERICAL, Rk4::new(0.01), SPHERICAL.one_radian());
     check(SPRING, Rk4::new(0.01), SPRING.horizontal());
+}
+
+/// Takes 1,000 steps of the generic path and expects that none allocates.
+#[track_caller]
+fn check_generic<S: GenericSystem, const N: usize>(system: S, scheme: GenericEvi, start: Start<N>) {
+    let mut run = scheme.start(system, &start.q, &start.v).expect("the start is consistent");
+    assert_eq!(allocations(|| assert!(run.advance_to(10.0).is_ok())), 0);
+    assert_eq!(run.steps(), 1_000);
+}
+
+#[test]
+fn no_step_of_the_generic_path_allocates() {
+    check_generic(PENDULUM, GenericEvi::midpoint(0.01), SWING);
+    check_generic(DOUBLE, GenericEvi::midpoint(0.01), mild());
+    check_generic(DOUBLE, GenericEvi::simpson(0.01).frequencies(PER_BODY), mild());
+    check_generic(SPHERICAL, GenericEvi::simpson(0.01).frequency(OMEGA), SPHERICAL.one_radian());
 }
 
 #[test]

@@ -4,7 +4,7 @@ use std::error::Error;
 use std::fmt::Debug;
 
 use evi_core::baseline::{Rattle, Rk4};
-use evi_core::integrator::Interrupted;
+use evi_core::integrator::{ConstraintLabel, Interrupted};
 use evi_core::linear::{DenseLu, Factorization, SingularMatrix};
 use evi_core::mechanics::ProjectionError;
 use evi_core::prelude::*;
@@ -185,10 +185,10 @@ fn a_position_beside_a_constraint_is_refused_by_name() {
     let error = start_error(DOUBLE, Evi::midpoint(0.01), [0.0, -1.0, 0.0, -2.001], [0.0; 4]);
     assert_error!(
         error,
-        StartError::InconsistentPosition { constraint: "rod2", residual, allowed }
+        StartError::InconsistentPosition { constraint: ConstraintLabel::Name("rod2"), residual, allowed }
             if (residual - (1.001_f64.powi(2) - 1.0)).abs() < 1e-12 && allowed > 0.0 && allowed < 1e-10
     );
-    check_text(&error, &["rod2", "residual 2.00", "allowed", "start_projected"]);
+    check_text(&error, &["`rod2`", "residual 2.00", "allowed", "start_projected"]);
     // Thirteen decimals of the same position pass.
     assert!(Simulation::new(DOUBLE, Evi::midpoint(0.01)).start([0.6, -0.8, 0.6, -1.8], [0.0; 4]).is_ok());
 }
@@ -199,10 +199,10 @@ fn a_velocity_that_leaves_a_constraint_is_refused_by_name() {
     let StartError::InconsistentVelocity { constraint, residual, allowed } = error else {
         panic!("{error:?}");
     };
-    assert_eq!(constraint, "rod");
+    assert_eq!(constraint, ConstraintLabel::Name("rod"));
     // The constraint's gradient is (0, 0, −2): of the velocity, four fifths lead away.
     assert!((residual - 0.8).abs() < 1e-15 && allowed < 1e-10, "{error:?}");
-    check_text(&error, &["rod", "velocity", "of its terms", "start_projected"]);
+    check_text(&error, &["`rod`", "velocity", "of its terms", "start_projected"]);
 }
 
 #[test]

@@ -40,7 +40,7 @@
 //! |---|---|---|
 //! | `std` | yes | trajectories on the heap; elementary functions of the platform. Without it the crate is `no_std` |
 //! | `derive` | yes | re-exports `#[derive(MechanicalSystem)]` |
-//! | `generic` | no | [`scalar::Scalar`] for the dual numbers of num-dual |
+//! | `generic` | no | `generic::GenericEvi` for systems of run-time size; [`scalar::Scalar`] for the dual numbers of num-dual |
 
 #![cfg_attr(not(feature = "std"), no_std)]
 

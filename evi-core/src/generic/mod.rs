@@ -1,7 +1,35 @@
 //! The generic path: systems whose equations are functions over any [`Scalar`], with sizes known at run time.
 //!
-//! The derive emits one implementation per scene: the user's expressions in the user's order, without any
-//! simplification. It shares nothing with the symbolic compiler and serves as the oracle of its tests.
+//! In: a [`GenericSystem`], emitted by the derive for every scene (the user's expressions in the user's order, without
+//! any simplification) or written by hand where sizes are known only when the program runs. Out, behind the feature
+//! `generic`: `GenericRun`, the exponential variational integrator on dense matrices of run-time size, with first
+//! and second derivatives by dual numbers. It shares nothing with the symbolic compiler: the oracle of its tests, the
+//! baseline that the specialised path is compared with, and what a user has who writes no derive. The stopping rule of
+//! Newton's iteration, the interpolants and the errors are those of the specialised path and stand below.
+
+#[cfg(feature = "generic")]
+mod acceleration;
+#[cfg(feature = "generic")]
+mod chunk;
+#[cfg(feature = "generic")]
+mod derivatives;
+#[cfg(feature = "generic")]
+mod kkt;
+#[cfg(feature = "generic")]
+mod projection;
+#[cfg(feature = "generic")]
+mod run;
+#[cfg(feature = "generic")]
+mod scheme;
+#[cfg(feature = "generic")]
+mod step;
+
+#[cfg(feature = "generic")]
+pub use acceleration::GenericAcceleration;
+#[cfg(feature = "generic")]
+pub use run::GenericRun;
+#[cfg(feature = "generic")]
+pub use scheme::GenericEvi;
 
 use crate::scalar::Scalar;
 

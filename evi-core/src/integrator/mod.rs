@@ -13,7 +13,11 @@ mod trajectory;
 
 pub use evi::{Evi, EviStep};
 pub use run::Run;
-pub use simulation::{Simulation, StartError};
+#[cfg(feature = "generic")]
+pub(crate) use run::steps_between;
+#[cfg(feature = "generic")]
+pub(crate) use simulation::CONSISTENCY;
+pub use simulation::{ConstraintLabel, Simulation, StartError};
 #[cfg(feature = "std")]
 pub use trajectory::{Interrupted, Trajectory};
 

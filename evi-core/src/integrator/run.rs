@@ -7,6 +7,19 @@ use crate::comparison::Solver;
 use crate::mechanics::{Mechanics, State};
 use crate::system::MechanicalSystem;
 
+/// Number of whole steps of size `h` nearest to the span from `t` to `target`; 0 if `target` lies on the other side.
+pub(crate) fn steps_between(t: f64, target: f64, h: f64) -> Result<u64, StepError> {
+    /// Up to here every whole number is a float.
+    const MOST_STEPS: f64 = (1_u64 << f64::MANTISSA_DIGITS) as f64;
+    let steps = (target - t) / h;
+    if steps.abs() < MOST_STEPS {
+        // The cast saturates: negative numbers become 0.
+        Ok((steps + 0.5) as u64)
+    } else {
+        Err(StepError::UnreachableTime { target, h })
+    }
+}
+
 /// A one-step map and the state that it has reached.
 ///
 /// A step that fails leaves the run at the last state that was reached.
@@ -95,16 +108,7 @@ impl<S: MechanicalSystem, M: OneStep<S>> Run<S, M> {
 
     /// Number of whole steps nearest to the span from here to `t`; 0 if `t` lies on the other side.
     fn steps_to(&self, t: f64) -> Result<u64, StepError> {
-        /// Up to here every whole number is a float.
-        const MOST_STEPS: f64 = (1_u64 << f64::MANTISSA_DIGITS) as f64;
-        let h = self.map.h();
-        let steps = (t - self.state.t) / h;
-        if steps.abs() < MOST_STEPS {
-            // The cast saturates: negative numbers become 0.
-            Ok((steps + 0.5) as u64)
-        } else {
-            Err(StepError::UnreachableTime { target: t, h })
-        }
+        steps_between(self.state.t, t, self.map.h())
     }
 }
 

@@ -1,5 +1,7 @@
 //! A scene joined with a scheme, and the start of a run.
 
+use core::fmt;
+
 use super::{OneStep, Run, Scheme};
 use crate::array::Array;
 use crate::mechanics::{Mechanics, ProjectionError, State};
@@ -8,7 +10,7 @@ use crate::system::MechanicalSystem;
 
 /// A start is consistent when a constraint residual is below this fraction of what it would be for a
 /// displacement (or velocity) of full size: decimal data with 13 digits pass, shortened data do not.
-const CONSISTENCY: f64 = 1e-12;
+pub(crate) const CONSISTENCY: f64 = 1e-12;
 
 /// A scene and the scheme that integrates it.
 ///
@@ -30,6 +32,24 @@ pub struct Simulation<S, F> {
     scheme: F,
 }
 
+/// Which constraint an error speaks of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ConstraintLabel {
+    /// Its name in the attribute.
+    Name(&'static str),
+    /// Its place in `φ`, counted from 0, where constraints have no names: on the generic path.
+    Index(usize),
+}
+
+impl fmt::Display for ConstraintLabel {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Name(name) => write!(formatter, "`{name}`"),
+            Self::Index(index) => write!(formatter, "{index}"),
+        }
+    }
+}
+
 /// A run that cannot start.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -47,14 +67,24 @@ pub enum StartError {
         /// The value.
         value: f64,
     },
+    /// Positions or velocities are not one per coordinate; only where sizes are known at run time.
+    #[error("{quantity} of the start has {found} values, the system {expected} coordinates")]
+    Length {
+        /// `position` or `velocity`.
+        quantity: &'static str,
+        /// Number of coordinates.
+        expected: usize,
+        /// Number of values.
+        found: usize,
+    },
     /// The position violates a constraint.
     #[error(
-        "the start violates constraint `{constraint}`: residual {residual:e}, allowed {allowed:e}. \
+        "the start violates constraint {constraint}: residual {residual:e}, allowed {allowed:e}. \
          `start_projected` moves the start onto the constraints"
     )]
     InconsistentPosition {
-        /// Name of the constraint.
-        constraint: &'static str,
+        /// The constraint.
+        constraint: ConstraintLabel,
         /// `φ(t₀, q₀)`.
         residual: f64,
         /// Largest residual that passes.
@@ -62,12 +92,12 @@ pub enum StartError {
     },
     /// The velocity leads away from a constraint.
     #[error(
-        "the start velocity leaves constraint `{constraint}`: G v + ∂φ/∂t is {residual:e} of its terms, \
+        "the start velocity leaves constraint {constraint}: G v + ∂φ/∂t is {residual:e} of its terms, \
          allowed {allowed:e}. `start_projected` projects the velocity"
     )]
     InconsistentVelocity {
-        /// Name of the constraint.
-        constraint: &'static str,
+        /// The constraint.
+        constraint: ConstraintLabel,
         /// `|G v + ∂φ/∂t| / (‖G‖ ‖v‖ + |∂φ/∂t|)`.
         residual: f64,
         /// Largest residual that passes.
@@ -188,7 +218,8 @@ fn check_position<S: MechanicalSystem>(
         // Compared this way round, so that a NaN fails.
         let passes = residual[c].abs() <= allowed[c];
         if !passes {
-            let (constraint, residual, allowed) = (S::CONSTRAINTS[c], residual[c], allowed[c]);
+            let (residual, allowed) = (residual[c], allowed[c]);
+            let constraint = ConstraintLabel::Name(S::CONSTRAINTS[c]);
             return Err(StartError::InconsistentPosition { constraint, residual, allowed });
         }
     }
@@ -205,7 +236,8 @@ fn check_velocity<S: MechanicalSystem>(
     for c in 0..S::N_CONSTRAINTS {
         let passes = residual[c] <= CONSISTENCY;
         if !passes {
-            let (constraint, residual, allowed) = (S::CONSTRAINTS[c], residual[c], CONSISTENCY);
+            let (residual, allowed) = (residual[c], CONSISTENCY);
+            let constraint = ConstraintLabel::Name(S::CONSTRAINTS[c]);
             return Err(StartError::InconsistentVelocity { constraint, residual, allowed });
         }
     }

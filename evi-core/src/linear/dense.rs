@@ -9,6 +9,32 @@ const fn singular_pivot_ratio(dimension: usize) -> f64 {
     4.0 * dimension as f64 * f64::EPSILON
 }
 
+/// Smallest over largest of the pivots of a `dimension × dimension` elimination, if the matrix is regular.
+#[inline]
+pub(crate) fn checked_pivot_ratio(
+    dimension: usize,
+    pivot: impl Fn(usize) -> f64,
+) -> Result<f64, SingularMatrix> {
+    let (mut smallest, mut largest) = (f64::INFINITY, 0.0_f64);
+    for i in 0..dimension {
+        let pivot = pivot(i).abs();
+        // Written so that a NaN pivot survives both comparisons: NaN entries reach the last pivot.
+        smallest = if pivot >= smallest { smallest } else { pivot };
+        largest = if pivot <= largest { largest } else { pivot };
+    }
+    let pivot_ratio = match smallest {
+        _ if dimension == 0 => 1.0,
+        // The zero matrix, whose quotient is not a number.
+        0.0 => 0.0,
+        _ => smallest / largest,
+    };
+    if pivot_ratio > singular_pivot_ratio(dimension) {
+        Ok(pivot_ratio)
+    } else {
+        Err(SingularMatrix { pivot_ratio })
+    }
+}
+
 /// `P A = L U` with partial pivoting (Golub & Van Loan, Matrix Computations, 4th ed., alg. 3.4.1).
 pub struct DenseLu<const D: usize>
 where
@@ -25,24 +51,8 @@ where
     #[inline]
     fn factor(matrix: &[[f64; D]; D]) -> Result<Self, SingularMatrix> {
         let factors = LU::new(SMatrix::<f64, D, D>::from_fn(|row, col| matrix[row][col]));
-        let (mut smallest, mut largest) = (f64::INFINITY, 0.0_f64);
-        for i in 0..D {
-            let pivot = factors.lu_internal()[(i, i)].abs();
-            // Written so that a NaN pivot survives both comparisons: NaN entries reach the last pivot.
-            smallest = if pivot >= smallest { smallest } else { pivot };
-            largest = if pivot <= largest { largest } else { pivot };
-        }
-        let pivot_ratio = match smallest {
-            _ if D == 0 => 1.0,
-            // The zero matrix, whose quotient is not a number.
-            0.0 => 0.0,
-            _ => smallest / largest,
-        };
-        if pivot_ratio > singular_pivot_ratio(D) {
-            Ok(Self { factors, pivot_ratio })
-        } else {
-            Err(SingularMatrix { pivot_ratio })
-        }
+        let pivot_ratio = checked_pivot_ratio(D, |i| factors.lu_internal()[(i, i)])?;
+        Ok(Self { factors, pivot_ratio })
     }
 
     #[inline]

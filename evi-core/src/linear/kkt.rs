@@ -155,7 +155,7 @@ where
 
 /// The power of two next below `1/x`; 1 where `x` is zero or not a normal number.
 #[inline]
-fn reciprocal_power_of_two(x: f64) -> f64 {
+pub(crate) fn reciprocal_power_of_two(x: f64) -> f64 {
     const EXPONENT_BITS: u64 = 0x7ff;
     const MANTISSA_BITS: u32 = 52;
     const LARGEST_REPRESENTABLE_SHIFT: u64 = 2 * 1023;

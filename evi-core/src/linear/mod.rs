@@ -1,7 +1,8 @@
 //! Linear solves of a step: in, a square matrix by rows; out, factors that solve for right-hand sides.
 //!
-//! [`Factorization`] is the contract between the integrators and a scene's own elimination. What stands here for
-//! every scene is the pivoted dense one, [`DenseLu`].
+//! [`Factorization`] is the contract between the integrators and a scene's own solvers: closed forms for one or two
+//! rows, the elimination that the derive emits for the scene's pattern ([`Guarded`]), and the pivoted dense one for
+//! every pattern ([`DenseLu`]).
 
 mod closed_form;
 mod dense;
@@ -10,7 +11,11 @@ mod kkt;
 
 pub use closed_form::{Inverse0, Inverse1, Inverse2};
 pub use dense::DenseLu;
+#[cfg(feature = "generic")]
+pub(crate) use dense::checked_pivot_ratio;
 pub use elimination::{Elimination, Guarded, reciprocal_pivot};
+#[cfg(feature = "generic")]
+pub(crate) use kkt::reciprocal_power_of_two;
 pub(crate) use kkt::{FactoredKkt, Kkt, constraint_index, unknowns};
 
 /// Factors of a square matrix `A`.

@@ -247,6 +247,19 @@ fn checked_coefficients<const K: usize>(
     quadrature: &Quadrature<K>,
     h: f64,
 ) -> Result<[NodeCoefficients; K], SchemeError> {
+    let nodes = quadrature.offsets().map(|offset| NodeCoefficients::new(frequency, h, offset));
+    check_interpolant(frequency, coordinate, h, quadrature.weights(), &nodes)?;
+    Ok(nodes)
+}
+
+/// Refuses an interpolant that defines no step, from its coefficients at the nodes of a rule with `weights`.
+pub(crate) fn check_interpolant(
+    frequency: Frequency,
+    coordinate: usize,
+    h: f64,
+    weights: &[f64],
+    nodes: &[NodeCoefficients],
+) -> Result<(), SchemeError> {
     let value = frequency.value();
     if !(value.is_finite() && value >= 0.0) {
         return Err(SchemeError::Frequency { coordinate, value });
@@ -258,19 +271,18 @@ fn checked_coefficients<const K: usize>(
     if is_trigonometric && phase > 1.0 && sine.abs() < SMALLEST_SINE {
         return Err(SchemeError::ResonantFrequency { coordinate, phase, sine });
     }
-    let nodes = quadrature.offsets().map(|offset| NodeCoefficients::new(frequency, h, offset));
-    let kinetic_coefficient = kinetic_coefficient(quadrature, &nodes);
+    let kinetic_coefficient = kinetic_coefficient(weights, nodes);
     if kinetic_coefficient.abs() < SMALLEST_KINETIC_COEFFICIENT {
         return Err(SchemeError::VanishingInertia { coordinate, phase, kinetic_coefficient });
     }
-    Ok(nodes)
+    Ok(())
 }
 
 /// `Σ wⱼ (−h g₁'(cⱼ)) (h g₂'(cⱼ))`: the share of the mass that ties the end of a free step to its start.
 ///
 /// It vanishes at `u = π/2` for the trapezoid, `2π/3` for Simpson's rule, and only at `π` for the midpoint.
-fn kinetic_coefficient<const K: usize>(quadrature: &Quadrature<K>, nodes: &[NodeCoefficients; K]) -> f64 {
-    quadrature.weights().iter().zip(nodes).map(|(weight, c)| -weight * c.start_rate() * c.end_rate()).sum()
+fn kinetic_coefficient(weights: &[f64], nodes: &[NodeCoefficients]) -> f64 {
+    weights.iter().zip(nodes).map(|(weight, c)| -weight * c.start_rate() * c.end_rate()).sum()
 }
 
 /// Interpolates a whole configuration: overwrites `x` and `v` at `node` from the ends' half-sum and difference.

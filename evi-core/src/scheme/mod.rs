@@ -7,6 +7,8 @@ mod basis;
 mod frequency;
 mod quadrature;
 
+#[cfg(feature = "generic")]
+pub(crate) use basis::check_interpolant;
 pub(crate) use basis::interpolate;
 pub use basis::{
     CoordinateTable, Interpolant, InterpolationTable, Linear, LinearTable, NodeCoefficients, UniformTable,
@@ -57,6 +59,14 @@ pub enum SchemeError {
         phase: f64,
         /// `Σ wⱼ (−h g₁'(cⱼ)) (h g₂'(cⱼ))`.
         kinetic_coefficient: f64,
+    },
+    /// The frequencies are not one per coordinate.
+    #[error("{frequencies} frequencies for {coordinates} coordinates: give one for all, or one each")]
+    FrequencyCount {
+        /// Number of frequencies.
+        frequencies: usize,
+        /// Number of coordinates of the system.
+        coordinates: usize,
     },
     /// The scheme asks for a structure that the scene does not have.
     #[error("{scheme} needs {requirement}")]

@@ -1,0 +1,170 @@
+//! One step of the generic path.
+//!
+//! In: a state. Out: the next state in a buffer of the caller, or why there is none. The equations, their scaling and the
+//! stopping rule are those of the specialised path:
+//!
+//! ```text
+//! h (−D₁L_d(q₀, q₀ + d) − p₀) + G₀ᵀ Λ = 0        φ(t₁, q₀ + d) = 0        p⁻ = D₂L_d(q₀, q₁)
+//! ```
+//!
+//! for `(d, Λ)` by Newton's iteration with `[hA G₀ᵀ; G₁ 0]`, `A = −D₁D₂L_d`, from `d = h v₀`. The projection of `p⁻` is
+//! left to [`projection`](super::projection).
+
+use nalgebra::DMatrix;
+
+use super::GenericSystem;
+use super::derivatives::{Derivatives, Point};
+use super::kkt::Kkt;
+use super::scheme::Nodes;
+use crate::integrator::{IterationFailure, StepError};
+use crate::linear::largest_magnitude;
+use crate::mechanics::relative;
+use crate::newton;
+
+/// A point of a motion; constraints and hidden constraints hold to round-off.
+pub(super) struct GenericState {
+    pub(super) t: f64,
+    pub(super) q: Vec<f64>,
+    pub(super) v: Vec<f64>,
+    pub(super) p: Vec<f64>,
+    /// `G(t, q)`: the end of one step is the start of the next.
+    pub(super) jacobian: DMatrix<f64>,
+}
+
+impl GenericState {
+    pub(super) fn zero(n_coordinates: usize, n_constraints: usize) -> Self {
+        let zeros = || vec![0.0; n_coordinates];
+        let jacobian = DMatrix::zeros(n_constraints, n_coordinates);
+        Self { t: 0.0, q: zeros(), v: zeros(), p: zeros(), jacobian }
+    }
+
+    fn is_finite(&self) -> bool {
+        [&self.q, &self.v, &self.p].into_iter().flatten().all(|number| number.is_finite())
+    }
+}
+
+/// The one-step map with every buffer that it needs.
+pub(super) struct GenericStep<S> {
+    pub(super) derivatives: Derivatives<S>,
+    nodes: Nodes,
+    pub(super) kkt: Kkt,
+    /// Right-hand side, then solution, of a linear solve: coordinates, then constraints.
+    pub(super) unknowns: Vec<f64>,
+    /// `Λ` of the step, then `N` of the projection.
+    pub(super) impulse: Vec<f64>,
+    /// `∂φ/∂t` at the end of the step.
+    pub(super) time_rates: Vec<f64>,
+    difference: Vec<f64>,
+    /// Position and velocity at a node.
+    x: Vec<f64>,
+    v: Vec<f64>,
+}
+
+impl<S: GenericSystem> GenericStep<S> {
+    pub(super) fn new(system: S, nodes: Nodes) -> Self {
+        let (n, m) = (system.n_coordinates(), system.n_constraints());
+        Self {
+            derivatives: Derivatives::new(system),
+            nodes,
+            kkt: Kkt::new(n, m),
+            unknowns: vec![0.0; n + m],
+            impulse: vec![0.0; m],
+            time_rates: vec![0.0; m],
+            difference: vec![0.0; n],
+            x: vec![0.0; n],
+            v: vec![0.0; n],
+        }
+    }
+
+    /// Step size.
+    pub(super) const fn h(&self) -> f64 {
+        self.nodes.h
+    }
+
+    /// Overwrites `next` with the state one step after `state`; after an error `next` means nothing.
+    pub(super) fn step(&mut self, state: &GenericState, next: &mut GenericState) -> Result<(), StepError> {
+        let h = self.h();
+        self.solve(state, next)?;
+        next.t = state.t + h;
+        for i in 0..state.q.len() {
+            next.q[i] = state.q[i] + self.difference[i];
+            next.v[i] = self.difference[i] / h;
+        }
+        self.end_momentum(state, &mut next.p);
+        self.project_momentum(next).map_err(|cause| StepError::Projection { t: next.t, cause })?;
+        if next.is_finite() { Ok(()) } else { Err(StepError::NotFinite { t: next.t }) }
+    }
+
+    /// Finds the difference `d = q₁ − q₀`; uses the configuration and the Jacobian of `end` as buffers.
+    fn solve(&mut self, state: &GenericState, end: &mut GenericState) -> Result<(), StepError> {
+        let (n, h) = (state.q.len(), self.h());
+        for (difference, velocity) in self.difference.iter_mut().zip(&state.v) {
+            *difference = h * velocity;
+        }
+        self.impulse.fill(0.0);
+        let mut constraint_residual = 0.0;
+        let mut smallest_pivot_ratio = 1.0_f64;
+        let iteration = newton::iterate(|correction| {
+            self.linearize(state, end);
+            constraint_residual = largest_magnitude(self.unknowns[n..].iter().copied());
+            self.kkt.factor().map_err(|matrix| IterationFailure::Singular { correction, matrix })?;
+            smallest_pivot_ratio = smallest_pivot_ratio.min(self.kkt.pivot_ratio());
+            self.kkt.solve(&mut self.unknowns);
+            let (moves, impulses) = self.unknowns.split_at(n);
+            for (difference, update) in self.difference.iter_mut().zip(moves) {
+                *difference -= update;
+            }
+            for (impulse, update) in self.impulse.iter_mut().zip(impulses) {
+                *impulse -= update;
+            }
+            let scale = self.kkt.scaled_length(&state.q).max(self.kkt.scaled_length(&self.difference));
+            Ok(relative(self.kkt.scaled_length(&self.unknowns), scale))
+        });
+        match iteration {
+            Ok(_) => Ok(()),
+            Err(failure) => {
+                Err(IterationFailure::at(failure, state.t, constraint_residual, smallest_pivot_ratio))
+            }
+        }
+    }
+
+    /// Overwrites `unknowns` with the residual of the step equations at `(d, Λ)`, and `kkt` with their derivative.
+    fn linearize(&mut self, state: &GenericState, end: &mut GenericState) {
+        let Self { derivatives, nodes, kkt, unknowns, impulse, difference, x, v, .. } = self;
+        let (n, h) = (state.q.len(), nodes.h);
+        let (momentum_row, constraint_row) = unknowns.split_at_mut(n);
+        kkt.clear();
+        momentum_row.fill(0.0);
+        for node in &nodes.nodes {
+            node.interpolate(h, &state.q, difference, x, v);
+            let at = Point { t: state.t + (0.5 + node.offset) * h, q: x, v };
+            derivatives.add_mixed(
+                at,
+                (&node.starts, &node.ends),
+                -node.weight,
+                momentum_row,
+                &mut kkt.matrix,
+            );
+        }
+        for i in 0..n {
+            momentum_row[i] = h * (momentum_row[i] - state.p[i]);
+            for (c, impulse) in impulse.iter().enumerate() {
+                momentum_row[i] += state.jacobian[(c, i)] * impulse;
+            }
+            end.q[i] = state.q[i] + difference[i];
+        }
+        derivatives.constraints(state.t + h, &end.q, constraint_row, &mut end.jacobian);
+        kkt.set_jacobians(&state.jacobian, &end.jacobian);
+    }
+
+    /// Overwrites `momentum` with `p⁻ = D₂L_d(q₀, q₀ + d)`.
+    fn end_momentum(&mut self, state: &GenericState, momentum: &mut [f64]) {
+        let Self { derivatives, nodes, difference, x, v, .. } = self;
+        momentum.fill(0.0);
+        for node in &nodes.nodes {
+            node.interpolate(nodes.h, &state.q, difference, x, v);
+            let at = Point { t: state.t + (0.5 + node.offset) * nodes.h, q: x, v };
+            derivatives.add_gradient(at, &node.ends, node.weight, momentum);
+        }
+    }
+}
