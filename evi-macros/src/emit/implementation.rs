@@ -5,11 +5,12 @@ use quote::quote;
 
 use super::generic::generic_system;
 use super::kernel::Writer;
+use super::report::{report, source};
 use super::storage::{Sizes, associated_types};
 use crate::expr::{Dependence, Graph};
-use crate::model::Model;
+use crate::model::{Model, WrittenEquation};
 use crate::schedule::{ConstantSlots, Operations, Program, Programs};
-use crate::structure::{Entry, EntryValue};
+use crate::structure::{Block, ConstraintStructure, Entry, EntryValue, MassShape, Potential};
 use crate::syntax::Declaration;
 
 /// Everything that the derive emits for a well-formed struct.
@@ -18,6 +19,7 @@ pub(crate) fn implementation(
     model: &Model,
     graph: &Graph,
     programs: &Programs,
+    written: &[WrittenEquation],
 ) -> TokenStream {
     let struct_name = &declaration.name;
     let generic_system = generic_system(declaration, model);
@@ -32,7 +34,7 @@ pub(crate) fn implementation(
         n_jacobian_entries: programs.structure.jacobian_entries.len(),
     };
     let types = associated_types(&sizes);
-    let fields = model.parameters.iter().map(|&field| &declaration.fields[field].name);
+    let fields: Vec<&Ident> = model.parameters.iter().map(|&field| &declaration.fields[field].name).collect();
     let kernels = Kernels { graph, model, slots: &programs.slots };
     let kernels = [
         kernels.constants(&programs.constants),
@@ -43,26 +45,33 @@ pub(crate) fn implementation(
         kernels.constraint_derivatives(&programs.constraint_derivatives),
         kernels.constraint_curvature(&programs.constraint_curvature),
     ];
-    quote! {
-        const _: () = {
-            #[automatically_derived]
-            #[allow(unused_variables, unused_parens, clippy::all)]
-            impl ::evi_core::__private::MechanicalSystem for #struct_name {
-                #names
-                #structure
-                #types
+    let kernels: TokenStream = kernels.into_iter().collect();
+    let system = |report: TokenStream| {
+        quote! {
+            const _: () = {
+                #[automatically_derived]
+                #[allow(unused_variables, unused_parens, clippy::all)]
+                impl ::evi_core::__private::MechanicalSystem for #struct_name {
+                    #names
+                    #structure
+                    #report
+                    #types
 
-                #[inline]
-                fn parameters(&self) -> Self::PerParameter<f64> {
-                    [#(self.#fields),*]
+                    #[inline]
+                    fn parameters(&self) -> Self::PerParameter<f64> {
+                        [#(self.#fields),*]
+                    }
+
+                    #kernels
                 }
 
-                #(#kernels)*
-            }
-
-            #generic_system
-        };
-    }
+                #generic_system
+            };
+        }
+    };
+    let source = source(|| system(TokenStream::new()));
+    let report = report(declaration, written, programs);
+    system(quote!(#report #source))
 }
 
 /// The names of coordinates, constraints and parameters.
@@ -84,6 +93,15 @@ fn structure(programs: &Programs) -> TokenStream {
     let (qq, vq) = (entries(&known.hessian_qq), entries(&known.hessian_vq));
     let (vv, vt) = (entries(&known.hessian_vv), entries(&known.hessian_vt));
     let (jacobian_q, jacobian_t) = (entries(&known.jacobian_q), entries(&known.jacobian_t));
+    let classification = &known.classification;
+    let (block_qq, block_vq) = (block(classification.qq), block(classification.vq));
+    let (block_vv, block_vt) = (block(classification.vv), block(classification.vt));
+    let (mass_shape, potential) =
+        (mass_shape(classification.mass_shape), potential(classification.potential));
+    let momentum_vanishes_at_rest = classification.momentum_vanishes_at_rest;
+    let each_constraint = classification.each_constraint.iter().map(constraint_structure);
+    let constraint_graph =
+        classification.constraint_graph.iter().map(|(first, second)| quote!((#first, #second)));
     let (mass, lagrangian) = (dependence(known.mass), dependence(known.lagrangian));
     let constraint_dependence = dependence(known.constraints);
     let constants = operations(programs.constants.operations);
@@ -97,9 +115,20 @@ fn structure(programs: &Programs) -> TokenStream {
         const STRUCTURE: ::evi_core::__private::Structure = ::evi_core::__private::Structure {
             hessian: ::evi_core::__private::HessianPattern { qq: #qq, vq: #vq, vv: #vv, vt: #vt },
             jacobian: ::evi_core::__private::JacobianPattern { q: #jacobian_q, t: #jacobian_t },
+            blocks: ::evi_core::__private::HessianBlocks {
+                qq: #block_qq,
+                vq: #block_vq,
+                vv: #block_vv,
+                vt: #block_vt,
+            },
             mass: #mass,
+            mass_shape: #mass_shape,
+            potential: #potential,
+            momentum_vanishes_at_rest: #momentum_vanishes_at_rest,
             lagrangian: #lagrangian,
             constraints: #constraint_dependence,
+            each_constraint: &[#(#each_constraint),*],
+            constraint_graph: &[#(#constraint_graph),*],
             operations: ::evi_core::__private::KernelOperations {
                 constants: #constants,
                 lagrangian: #lagrangian_operations,
@@ -128,7 +157,48 @@ fn dependence(Dependence { on_q, on_v, on_t }: Dependence) -> TokenStream {
     quote!(::evi_core::__private::Dependence { on_q: #on_q, on_v: #on_v, on_t: #on_t })
 }
 
-fn operations(operations: Operations) -> TokenStream {
+fn block(block: Block) -> TokenStream {
+    let block = match block {
+        Block::Zero => quote!(Zero),
+        Block::Constant => quote!(Constant),
+        Block::Varying(on) => {
+            let on = dependence(on);
+            quote!(Varying(#on))
+        }
+    };
+    quote!(::evi_core::__private::Block::#block)
+}
+
+fn mass_shape(shape: MassShape) -> TokenStream {
+    let shape = match shape {
+        MassShape::Diagonal => quote!(Diagonal),
+        MassShape::BlockDiagonal(blocks) => quote!(BlockDiagonal(#blocks)),
+        MassShape::Full => quote!(Full),
+    };
+    quote!(::evi_core::__private::MassShape::#shape)
+}
+
+fn potential(potential: Potential) -> TokenStream {
+    let potential = match potential {
+        Potential::Zero => quote!(Zero),
+        Potential::Affine => quote!(Affine),
+        Potential::Quadratic => quote!(Quadratic),
+        Potential::General => quote!(General),
+        Potential::Inseparable => quote!(Inseparable),
+    };
+    quote!(::evi_core::__private::Potential::#potential)
+}
+
+fn constraint_structure(constraint: &ConstraintStructure) -> TokenStream {
+    let (gradient, on_t) = (block(constraint.gradient), constraint.on_t);
+    let repeats = match constraint.repeats {
+        Some(earlier) => quote!(::core::option::Option::Some(#earlier)),
+        None => quote!(::core::option::Option::None),
+    };
+    quote!(::evi_core::__private::ConstraintStructure { gradient: #gradient, on_t: #on_t, repeats: #repeats })
+}
+
+pub(super) fn operations(operations: Operations) -> TokenStream {
     let Operations { additions, multiplications, divisions, functions } = operations;
     quote!(::evi_core::__private::Operations {
         additions: #additions,

@@ -1,5 +1,7 @@
 //! The interpreter: the oracle that every stage is tested against.
 
+use std::collections::HashMap;
+
 use num_dual::DualNum;
 
 use super::{Binary, ExprId, Graph, Node, Symbol, Unary};
@@ -11,7 +13,7 @@ pub(crate) fn evaluate<D: DualNum<Primitive = f64> + Copy>(
     roots: &[ExprId],
     symbol: impl Fn(Symbol) -> D,
 ) -> Vec<D> {
-    let mut values = std::collections::HashMap::new();
+    let mut values: HashMap<ExprId, D> = HashMap::new();
     for id in graph.reachable(roots, |_| false) {
         let value = match graph.node(id) {
             Node::Number(number) => D::from(number.value()),
