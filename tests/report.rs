@@ -2,7 +2,8 @@
 
 use evi_core::prelude::*;
 use evi_core::system::{
-    Block, Dependence, Entry, EntryValue, KernelOperations, MassShape, Operations, Potential, Structure,
+    Block, Dependence, Entry, EntryValue, KernelOperations, KernelReport, MassShape, Operations, Potential,
+    Structure, SystemReport,
 };
 use evi_examples::{DoublePendulum, HarmonicOscillator, Pendulum, SphericalPendulum, StiffSpringPendulum};
 use evi_tests::scenes::{
@@ -165,6 +166,17 @@ fn an_unused_field_changes_no_operation_count() {
     assert_ne!(without.lagrangian_derivatives, NOTHING);
     assert_eq!(format!("{with:?}"), format!("{without:?}"));
     assert_eq!(WithUnusedFields::PARAMETERS, DoublePendulum::PARAMETERS);
+}
+
+#[test]
+fn a_kernel_of_more_than_5000_statements_is_warned_of() {
+    const KERNEL: KernelReport = DoublePendulum::REPORT.kernels[3];
+    let allowed = &[KernelReport { statements: 5_000, ..KERNEL }];
+    let large = &[KernelReport { statements: 5_001, ..KERNEL }];
+    let report =
+        |kernels: &'static [KernelReport]| SystemReport { kernels, ..DoublePendulum::REPORT }.to_string();
+    assert!(!report(allowed).contains("Warnings"));
+    assert!(report(large).contains("lagrangian_derivatives has 5001 statements"), "{}", report(large));
 }
 
 #[test]
@@ -460,7 +472,7 @@ fn report_of_many_kinds_of_constraints() {
           constraints  affine in q, gradient constant: plane, again, alone
                        affine in q, gradient varies with t: turning
                        nonlinear in q: circle
-                       share a coordinate: plane–turning, plane–circle, plane–again, turning–circle, turning–again, turning–alone, circle–again, circle–alone
+                       share a coordinate: plane–turning, plane–circle, plane–again, turning–circle, turning–again, turning–alone and 2 more
 
         Matrix of a step   · zero, c constant, x varying
                    a b c │ plane turning circle again alone

@@ -7,8 +7,9 @@ use crate::expr::{ExprId, Graph};
 use crate::model::Model;
 use crate::schedule::{Operations, Programs};
 
-/// Statements of the largest kernel that is emitted. rustc needs about a minute for 50,000 of them in a debug build, and
-/// time and memory grow faster than the statements.
+/// Statements of the largest kernel that is emitted, ten times as many as the report warns of: a limit of
+/// good sense, since such a system is better written as loops over its parts. rustc's time and memory grow
+/// with the statements.
 const LARGEST_KERNEL: usize = 50_000;
 /// Contributions that a message lists.
 const LISTED_CONTRIBUTIONS: usize = 5;
@@ -49,8 +50,8 @@ pub(crate) fn check(graph: &Graph, model: &Model, programs: &Programs, diagnosti
         listed.push(format!("{others} more"));
     }
     let message = format!(
-        "{largest} makes the generated code too large: the kernel `{kernel}` has {statements} statements, at most \
-         {LARGEST_KERNEL} can be compiled\noperations as written: {}; give repeated subexpressions a `let`, or \
+        "{largest} makes the generated code too large: the kernel `{kernel}` has {statements} statements, \
+         at most {LARGEST_KERNEL} are emitted\noperations as written: {}; give repeated subexpressions a `let`, or \
          leave terms out",
         listed.join(", ")
     );
@@ -69,7 +70,8 @@ mod tests {
         }
         let expansion = expand(
             format!(
-                "#[evi(coordinates(x), kinetic = 0.5 * m * der(x).powi(2), potential = {}, constraint(c: x == m))]
+                "#[evi(coordinates(x), kinetic = 0.5 * m * der(x).powi(2), potential = {},
+                 constraint(c: x == m))]
                  struct Large {{ m: f64 }}",
                 terms[0]
             )

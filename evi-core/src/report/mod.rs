@@ -1,6 +1,7 @@
 //! What there is to read: a scene's [`SystemReport`], and statistics of runs.
 //!
-//! In: the constants that the derive wrote, or a time series. Out: text, or a trend. Printing a scene needs no `std`.
+//! In: the constants that the derive wrote, or a time series. Out: text, or a trend. Printing a scene needs
+//! no `std`.
 
 #[cfg(feature = "std")]
 mod drift;

@@ -1,7 +1,7 @@
 //! A scene's structure in words.
 //!
-//! In: the constants of [`Structure`](crate::system::Structure). Out: sentences, each of which is true because of one
-//! constant.
+//! In: the constants of [`Structure`](crate::system::Structure). Out: sentences, each of which is true
+//! because of one constant.
 
 use core::fmt::{self, Display, Formatter};
 

@@ -1,6 +1,6 @@
-//! What kind of equations a scene has: the vocabulary of [`Structure`](super::Structure), every value of which the
-//! compiler finds in the scene's expressions, not at run time. Code that branches on these constants is compiled for
-//! the scene at hand and holds nothing else.
+//! What kind of equations a scene has: the vocabulary of [`Structure`](super::Structure), every value of
+//! which the compiler finds in the scene's expressions, not at run time. Code that branches on these
+//! constants is compiled for the scene at hand and holds nothing else.
 
 use super::Dependence;
 
@@ -51,8 +51,8 @@ pub struct HessianBlocks {
 }
 
 impl HessianBlocks {
-    /// Whether the equations of motion are linear in `(q, v)` but for the constraints: then the positions can be
-    /// eliminated from the equations of a step once per run.
+    /// Whether the equations of motion are linear in `(q, v)` but for the constraints: then the positions can
+    /// be eliminated from the equations of a step once per run.
     pub const fn are_constant(&self) -> bool {
         self.qq.is_constant() && self.vq.is_constant() && self.vv.is_constant()
     }

@@ -1,5 +1,5 @@
-//! What there is to tell about a scene, as data: equations as text, and sizes of the emitted code. It is written by
-//! the derive, costs nothing where it is not read, and is put into words by [`crate::report`].
+//! What there is to tell about a scene, as data: equations as text, and sizes of the emitted code. It is
+//! written by the derive, costs nothing where it is not read, and is put into words by [`crate::report`].
 
 use super::{Operations, Structure};
 
@@ -52,8 +52,8 @@ impl SystemReport {
         self.coordinates.len() + self.constraints.len()
     }
 
-    /// Unknowns that are left to Newton's method once the positions are eliminated: `m` where all second derivatives
-    /// of `L` are constant, `n + m` elsewhere.
+    /// Unknowns that are left to Newton's method once the positions are eliminated: `m` where all second
+    /// derivatives of `L` are constant, `n + m` elsewhere.
     pub const fn n_unknowns_after_elimination(&self) -> usize {
         if self.structure.blocks.are_constant() { self.constraints.len() } else { self.n_unknowns() }
     }
@@ -93,7 +93,7 @@ pub struct KernelReport {
 }
 
 impl KernelReport {
-    /// Statements beyond which the report warns: rustc needs seconds for such a kernel. The derive refuses a kernel
-    /// of ten times as many.
+    /// Statements beyond which the report warns that a kernel compiles slowly. The derive refuses a kernel of
+    /// ten times as many.
     pub const MANY_STATEMENTS: usize = 5_000;
 }

@@ -1,8 +1,9 @@
 //! Expressions as people write them: `½ m₁ ẋ₁²`, `\frac{1}{2} m_1 \dot{x}_1^2`.
 //!
-//! In: a node and the names of its symbols. Out: its text in one of two notations, a pure function of the graph. Only
-//! what does not change the meaning is tidied: nested sums and products become flat, the signs of factors move
-//! in front, functions without parentheses move to the end of their product. A long expression is abbreviated by `…`.
+//! In: a node and the names of its symbols. Out: its text in one of two notations, a pure function of the
+//! graph. Only what does not change the meaning is tidied: nested sums and products become flat, the signs of
+//! factors move in front, functions without parentheses move to the end of their product. A long expression
+//! is abbreviated by `…`.
 
 use std::cell::Cell;
 use std::collections::HashMap;
@@ -184,8 +185,8 @@ impl<'a> Printer<'a> {
         Text { text: format!("{minus}{}", printed.text), level: Level::Sum }
     }
 
-    /// The terms of nested sums, with the sign in front of each; `a − (b + c)` keeps its parentheses. No more than
-    /// can be printed.
+    /// The terms of nested sums, with the sign in front of each; `a − (b + c)` keeps its parentheses. No more
+    /// than can be printed.
     fn terms(&self, id: ExprId) -> Vec<(bool, ExprId)> {
         let mut terms = Vec::new();
         let mut pending = vec![(false, id)];
@@ -582,7 +583,8 @@ mod tests {
     /// The potential in both notations, in the coordinates `x`, `theta`, `x1`.
     fn printed(potential: &str) -> [String; 2] {
         let input = format!(
-            "#[evi(coordinates(x, theta, x1), kinetic = der(x) + der(theta) + der(x1), potential = {potential})]
+            "#[evi(coordinates(x, theta, x1), kinetic = der(x) + der(theta) + der(x1),
+             potential = {potential})]
              struct S {{ m: f64, l: f64, k0: f64, omega_max: f64 }}"
         );
         let tokens: TokenStream = input.parse().expect("tokens");

@@ -1,4 +1,5 @@
-//! Replacing symbols: in, roots and the new nodes of some symbols; out, the roots with these in place. Not simplified.
+//! Replacing symbols: in, roots and the new nodes of some symbols; out, the roots with these in place. Not
+//! simplified.
 
 use std::collections::HashMap;
 

@@ -81,7 +81,8 @@ pub(crate) fn written(declaration: &Declaration) -> Vec<WrittenEquation> {
     equations
 }
 
-/// The shared subexpressions that the equations use; what is only another name for a symbol or number is not one.
+/// The shared subexpressions that the equations use; what is only another name for a symbol or number is not
+/// one.
 fn shared_names(graph: &Graph, model: &Model) -> HashMap<ExprId, String> {
     let energies = model.energies.iter().map(|energy| energy.root);
     let roots: Vec<ExprId> = energies.chain(model.constraints.iter().map(|(_, root)| *root)).collect();
