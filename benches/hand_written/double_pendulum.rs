@@ -4,7 +4,7 @@
 use evi_examples::{DoublePendulum, Start};
 
 /// The run: positions, velocities, and what is constant or remembered.
-pub struct HandWritten {
+pub(crate) struct HandWritten {
     q: [f64; 4],
     v: [f64; 4],
     /// `2 h² / m` of the two bobs: displacement per multiplier and unit of the rod vector.
@@ -22,7 +22,7 @@ pub struct HandWritten {
 
 impl HandWritten {
     /// A run from rest.
-    pub fn new(system: &DoublePendulum, start: Start<4>, h: f64) -> Self {
+    pub(crate) fn new(system: &DoublePendulum, start: Start<4>, h: f64) -> Self {
         Self {
             q: start.q,
             v: start.v,
@@ -37,14 +37,9 @@ impl HandWritten {
         }
     }
 
-    /// Positions.
-    pub fn q(&self) -> &[f64; 4] {
-        &self.q
-    }
-
     /// One step; `false` if the multipliers did not converge.
     #[inline]
-    pub fn advance(&mut self) -> bool {
+    pub(crate) fn advance(&mut self) -> bool {
         let [x1, y1, x2, y2] = self.q;
         let (dx, dy) = (x2 - x1, y2 - y1);
         let (a1, a2) = (self.reach[0], self.reach[1]);

@@ -40,6 +40,7 @@
 //! |---|---|---|
 //! | `std` | yes | trajectories on the heap; elementary functions of the platform. Without it the crate is `no_std` |
 //! | `derive` | yes | re-exports `#[derive(MechanicalSystem)]` |
+//! | `source` | no | [`system::MechanicalSystem::SOURCE`] holds the generated code, to read |
 //! | `generic` | no | `generic::GenericEvi` for systems of run-time size; [`scalar::Scalar`] for the dual numbers of num-dual |
 
 #![cfg_attr(not(feature = "std"), no_std)]
@@ -56,7 +57,6 @@ pub mod integrator;
 pub mod linear;
 pub mod mechanics;
 mod newton;
-#[cfg(feature = "std")]
 pub mod report;
 pub mod scalar;
 pub mod scheme;

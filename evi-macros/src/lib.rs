@@ -4,6 +4,7 @@
 //! hash-consed graph (`expr`) from parsing to emission; it is never expanded to a tree. The expansion is a pure function
 //! of the tokens of the struct.
 
+mod budget;
 mod diagnostics;
 mod differentiate;
 mod emit;

@@ -4,7 +4,7 @@ use proc_macro2::TokenStream;
 
 use crate::diagnostics::Diagnostics;
 use crate::expr::Graph;
-use crate::{emit, mechanics, model, schedule, structure, syntax};
+use crate::{budget, emit, mechanics, model, schedule, structure, syntax};
 
 /// Expands the tokens of a struct into its implementation, or into the errors in them.
 pub(crate) fn expand(input: TokenStream) -> TokenStream {
@@ -27,6 +27,13 @@ pub(crate) fn expand(input: TokenStream) -> TokenStream {
     // Graph → straight-line programs with named intermediate values in bounded scopes.
     let programs = schedule::schedule(&graph, &equations, structure);
     graph.verify();
+    // Code that rustc could not compile is refused, at the equation that makes it large.
+    budget::check(&graph, &model, &programs, &mut diagnostics);
+    if !diagnostics.is_empty() {
+        return emit::fallback(&declaration, &diagnostics);
+    }
+    // Items → the equations as text, in the user's order, for the report.
+    let written = model::written(&declaration);
     // Programs → Rust.
-    emit::implementation(&declaration, &model, &graph, &programs)
+    emit::implementation(&declaration, &model, &graph, &programs, &written)
 }

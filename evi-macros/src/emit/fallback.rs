@@ -42,6 +42,8 @@ pub(crate) fn fallback(declaration: &Declaration, diagnostics: &Diagnostics) -> 
                 const CONSTRAINTS: &'static [&'static str] = &[#(#constraints),*];
                 const PARAMETERS: &'static [&'static str] = &[];
                 const STRUCTURE: ::evi_core::__private::Structure = ::evi_core::__private::Structure::UNKNOWN;
+                const REPORT: ::evi_core::__private::SystemReport =
+                    ::evi_core::__private::SystemReport::UNKNOWN;
                 #types
                 #solvers
 

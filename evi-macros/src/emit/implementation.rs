@@ -6,11 +6,14 @@ use quote::quote;
 use super::elimination::elimination_type;
 use super::generic::generic_system;
 use super::kernel::Writer;
+use super::report::{report, source};
 use super::storage::{Sizes, associated_types};
 use crate::expr::{Dependence, Graph};
-use crate::model::Model;
+use crate::model::{Model, WrittenEquation};
 use crate::schedule::{ConstantSlots, Operations, Program, Programs};
-use crate::structure::{Elimination, Entry, EntryValue, Structure};
+use crate::structure::{
+    Block, ConstraintStructure, Elimination, Entry, EntryValue, MassShape, Potential, Structure,
+};
 use crate::syntax::Declaration;
 
 /// Everything that the derive emits for a well-formed struct.
@@ -19,6 +22,7 @@ pub(crate) fn implementation(
     model: &Model,
     graph: &Graph,
     programs: &Programs,
+    written: &[WrittenEquation],
 ) -> TokenStream {
     let struct_name = &declaration.name;
     let generic_system = generic_system(declaration, model);
@@ -34,7 +38,7 @@ pub(crate) fn implementation(
     };
     let types = associated_types(&sizes);
     let (solver_types, solvers) = solvers(&sizes, &programs.structure);
-    let fields = model.parameters.iter().map(|&field| &declaration.fields[field].name);
+    let fields: Vec<&Ident> = model.parameters.iter().map(|&field| &declaration.fields[field].name).collect();
     let kernels = Kernels { graph, model, slots: &programs.slots };
     let kernels = [
         kernels.constants(&programs.constants),
@@ -45,29 +49,36 @@ pub(crate) fn implementation(
         kernels.constraint_derivatives(&programs.constraint_derivatives),
         kernels.constraint_curvature(&programs.constraint_curvature),
     ];
-    quote! {
-        const _: () = {
-            #solver_types
+    let kernels: TokenStream = kernels.into_iter().collect();
+    let system = |report: TokenStream| {
+        quote! {
+            const _: () = {
+                #solver_types
 
-            #[automatically_derived]
-            #[allow(unused_variables, unused_parens, trivial_numeric_casts, clippy::all)]
-            impl ::evi_core::__private::MechanicalSystem for #struct_name {
-                #names
-                #structure
-                #types
-                #solvers
+                #[automatically_derived]
+                #[allow(unused_variables, unused_parens, trivial_numeric_casts, clippy::all)]
+                impl ::evi_core::__private::MechanicalSystem for #struct_name {
+                    #names
+                    #structure
+                    #report
+                    #types
+                    #solvers
 
-                #[inline]
-                fn parameters(&self) -> Self::PerParameter<f64> {
-                    [#(self.#fields),*]
+                    #[inline]
+                    fn parameters(&self) -> Self::PerParameter<f64> {
+                        [#(self.#fields),*]
+                    }
+
+                    #kernels
                 }
 
-                #(#kernels)*
-            }
-
-            #generic_system
-        };
-    }
+                #generic_system
+            };
+        }
+    };
+    let source = source(|| system(TokenStream::new()));
+    let report = report(declaration, written, programs);
+    system(quote!(#report #source))
 }
 
 /// The scene's own eliminations, as types and as the associated types that name them.
@@ -121,6 +132,15 @@ fn structure(programs: &Programs) -> TokenStream {
     let (qq, vq) = (entries(&known.hessian_qq), entries(&known.hessian_vq));
     let (vv, vt) = (entries(&known.hessian_vv), entries(&known.hessian_vt));
     let (jacobian_q, jacobian_t) = (entries(&known.jacobian_q), entries(&known.jacobian_t));
+    let classification = &known.classification;
+    let (block_qq, block_vq) = (block(classification.qq), block(classification.vq));
+    let (block_vv, block_vt) = (block(classification.vv), block(classification.vt));
+    let (mass_shape, potential) =
+        (mass_shape(classification.mass_shape), potential(classification.potential));
+    let momentum_vanishes_at_rest = classification.momentum_vanishes_at_rest;
+    let each_constraint = classification.each_constraint.iter().map(constraint_structure);
+    let constraint_graph =
+        classification.constraint_graph.iter().map(|(first, second)| quote!((#first, #second)));
     let (mass, lagrangian) = (dependence(known.mass), dependence(known.lagrangian));
     let constraint_dependence = dependence(known.constraints);
     let constants = operations(programs.constants.operations);
@@ -134,9 +154,20 @@ fn structure(programs: &Programs) -> TokenStream {
         const STRUCTURE: ::evi_core::__private::Structure = ::evi_core::__private::Structure {
             hessian: ::evi_core::__private::HessianPattern { qq: #qq, vq: #vq, vv: #vv, vt: #vt },
             jacobian: ::evi_core::__private::JacobianPattern { q: #jacobian_q, t: #jacobian_t },
+            blocks: ::evi_core::__private::HessianBlocks {
+                qq: #block_qq,
+                vq: #block_vq,
+                vv: #block_vv,
+                vt: #block_vt,
+            },
             mass: #mass,
+            mass_shape: #mass_shape,
+            potential: #potential,
+            momentum_vanishes_at_rest: #momentum_vanishes_at_rest,
             lagrangian: #lagrangian,
             constraints: #constraint_dependence,
+            each_constraint: &[#(#each_constraint),*],
+            constraint_graph: &[#(#constraint_graph),*],
             operations: ::evi_core::__private::KernelOperations {
                 constants: #constants,
                 lagrangian: #lagrangian_operations,
@@ -165,7 +196,48 @@ fn dependence(Dependence { on_q, on_v, on_t }: Dependence) -> TokenStream {
     quote!(::evi_core::__private::Dependence { on_q: #on_q, on_v: #on_v, on_t: #on_t })
 }
 
-fn operations(operations: Operations) -> TokenStream {
+fn block(block: Block) -> TokenStream {
+    let block = match block {
+        Block::Zero => quote!(Zero),
+        Block::Constant => quote!(Constant),
+        Block::Varying(on) => {
+            let on = dependence(on);
+            quote!(Varying(#on))
+        }
+    };
+    quote!(::evi_core::__private::Block::#block)
+}
+
+fn mass_shape(shape: MassShape) -> TokenStream {
+    let shape = match shape {
+        MassShape::Diagonal => quote!(Diagonal),
+        MassShape::BlockDiagonal(blocks) => quote!(BlockDiagonal(#blocks)),
+        MassShape::Full => quote!(Full),
+    };
+    quote!(::evi_core::__private::MassShape::#shape)
+}
+
+fn potential(potential: Potential) -> TokenStream {
+    let potential = match potential {
+        Potential::Zero => quote!(Zero),
+        Potential::Affine => quote!(Affine),
+        Potential::Quadratic => quote!(Quadratic),
+        Potential::General => quote!(General),
+        Potential::Inseparable => quote!(Inseparable),
+    };
+    quote!(::evi_core::__private::Potential::#potential)
+}
+
+fn constraint_structure(constraint: &ConstraintStructure) -> TokenStream {
+    let (gradient, on_t) = (block(constraint.gradient), constraint.on_t);
+    let repeats = match constraint.repeats {
+        Some(earlier) => quote!(::core::option::Option::Some(#earlier)),
+        None => quote!(::core::option::Option::None),
+    };
+    quote!(::evi_core::__private::ConstraintStructure { gradient: #gradient, on_t: #on_t, repeats: #repeats })
+}
+
+pub(super) fn operations(operations: Operations) -> TokenStream {
     let Operations { additions, multiplications, divisions, functions } = operations;
     quote!(::evi_core::__private::Operations {
         additions: #additions,

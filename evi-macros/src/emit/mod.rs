@@ -7,6 +7,7 @@ mod fallback;
 mod generic;
 mod implementation;
 mod kernel;
+mod report;
 mod storage;
 
 pub(crate) use fallback::{compile_errors, fallback};

@@ -1,7 +1,7 @@
 //! A hash-consed expression graph: equal expressions are one node.
 //!
 //! Invariants: operands stand before the nodes that use them, so that ascending ids are a topological order;
-//! commutative operands are ordered; numbers are finite.
+//! commutative operands are ordered, except in a graph as written; numbers are finite.
 
 use std::collections::HashMap;
 
@@ -73,9 +73,15 @@ pub(crate) struct Graph {
     dependences: Vec<Dependence>,
     // Looked up, never iterated: its order must not reach the output.
     ids: HashMap<Node, ExprId>,
+    keeps_operand_order: bool,
 }
 
 impl Graph {
+    /// A graph whose commutative operands stay in the order of the source: for expressions that are printed.
+    pub(crate) fn as_written() -> Self {
+        Self { keeps_operand_order: true, ..Self::default() }
+    }
+
     pub(crate) fn node(&self, id: ExprId) -> Node {
         self.nodes[id.0 as usize]
     }
@@ -114,7 +120,7 @@ impl Graph {
     }
 
     pub(crate) fn binary(&mut self, operator: Binary, first: ExprId, second: ExprId) -> ExprId {
-        let swap = operator.is_commutative() && second < first;
+        let swap = operator.is_commutative() && second < first && !self.keeps_operand_order;
         let (first, second) = if swap { (second, first) } else { (first, second) };
         self.insert(Node::Binary(operator, first, second))
     }

@@ -1,9 +1,13 @@
-//! The expression graph that all stages share: nodes, operators, and (for tests) their values.
+//! The expression graph that all stages share: nodes, operators, their text, and (for tests) their values.
 
 #[cfg(test)]
 pub(crate) mod evaluate;
 mod graph;
 mod operator;
+mod print;
+mod substitute;
 
 pub(crate) use graph::{Dependence, ExprId, Graph, Node, Symbol};
 pub(crate) use operator::{Binary, Cost, Unary};
+pub(crate) use print::{Names, Notation, print, print_definition, print_name};
+pub(crate) use substitute::substitute;

@@ -4,7 +4,7 @@
 //! structurally are absent.
 
 use crate::differentiate::{partial, rate};
-use crate::expr::{ExprId, Graph, Symbol};
+use crate::expr::{ExprId, Graph, Symbol, substitute};
 use crate::model::Model;
 use crate::simplify::Simplifier;
 
@@ -31,6 +31,14 @@ pub(crate) struct Equations {
     pub(crate) jacobian_t: Vec<Partial>,
     /// `d²φ/dt²` without its acceleration term.
     pub(crate) curvature: Vec<ExprId>,
+    /// `∂L/∂q` and `∂L/∂v` at `v = 0`; no kernel evaluates them.
+    pub(crate) at_rest: AtRest,
+}
+
+/// First derivatives of `L` at `v = 0`.
+pub(crate) struct AtRest {
+    pub(crate) force: Vec<ExprId>,
+    pub(crate) momentum: Vec<ExprId>,
 }
 
 /// A derivative that does not vanish, and its place.
@@ -52,7 +60,7 @@ pub(crate) fn differentiate_equations(graph: &mut Graph, model: &Model) -> Equat
         (0..n).map(|i| calculus.partial_or_zero(lagrangian, Symbol::Velocity(i))).collect();
     let constraints: Vec<ExprId> =
         model.constraints.iter().map(|(_, residual)| calculus.simplified(*residual)).collect();
-    Equations {
+    let mut equations = Equations {
         hessian_qq: calculus.jacobian(&force, n, Symbol::Coordinate, is_lower),
         hessian_vq: calculus.jacobian(&momentum, n, Symbol::Coordinate, |_, _| true),
         hessian_vv: calculus.jacobian(&momentum, n, Symbol::Velocity, is_lower),
@@ -64,7 +72,12 @@ pub(crate) fn differentiate_equations(graph: &mut Graph, model: &Model) -> Equat
         force,
         momentum,
         constraints,
-    }
+        at_rest: AtRest { force: Vec::new(), momentum: Vec::new() },
+    };
+    // Last: nodes that are read for the structure only do not change the order of those that are computed.
+    equations.at_rest =
+        AtRest { force: calculus.at_rest(&equations.force), momentum: calculus.at_rest(&equations.momentum) };
+    equations
 }
 
 fn is_lower(row: usize, col: usize) -> bool {
@@ -108,6 +121,14 @@ impl Calculus<'_> {
             }
         }
         partials
+    }
+
+    /// The roots at `v = 0`.
+    fn at_rest(&mut self, roots: &[ExprId]) -> Vec<ExprId> {
+        let roots = substitute(self.graph, roots, |graph, symbol| {
+            matches!(symbol, Symbol::Velocity(_)).then(|| graph.number(0.0))
+        });
+        roots.into_iter().map(|root| self.simplified(root)).collect()
     }
 
     /// `d² root / dt²` along a motion without acceleration: `vᵀ φ_qq v + 2 φ_qt v + φ_tt`.

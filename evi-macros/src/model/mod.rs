@@ -5,6 +5,9 @@
 
 mod check;
 mod resolve;
+mod written;
+
+pub(crate) use written::{Formula, WrittenEquation, written};
 
 use proc_macro2::{Ident, TokenStream};
 
@@ -22,10 +25,19 @@ pub(crate) struct Model {
     pub(crate) named_constants: Vec<TokenStream>,
     /// `L(t, q, v)`.
     pub(crate) lagrangian: ExprId,
+    /// What `L` is made of, in the order kinetic, potential.
+    pub(crate) energies: Vec<Energy>,
     /// `φ = LHS − RHS`, with their names.
     pub(crate) constraints: Vec<(Ident, ExprId)>,
     /// The user's expressions, for the copy that is generic over the scalar.
     pub(crate) source: Source,
+}
+
+/// An energy as an item of its own.
+pub(crate) struct Energy {
+    /// `lagrangian`, `kinetic` or `potential`.
+    pub(crate) keyword: Ident,
+    pub(crate) root: ExprId,
 }
 
 /// The user's expressions in the user's order.
@@ -40,6 +52,7 @@ pub(crate) struct Source {
 pub(crate) struct SourceLet {
     pub(crate) name: Ident,
     pub(crate) value: Expression,
+    pub(crate) root: ExprId,
     /// Whether it depends on velocities, and so has no place among the constraints.
     pub(crate) has_velocity: bool,
 }
@@ -48,6 +61,12 @@ pub(crate) struct SourceLet {
 pub(crate) enum LagrangianSource {
     Whole(Expression),
     Difference { kinetic: Expression, potential: Expression },
+}
+
+impl Energy {
+    fn of(keyword: &Ident, equation: &Option<(ExprId, Expression)>) -> Option<Self> {
+        equation.as_ref().map(|(root, _)| Self { keyword: keyword.clone(), root: *root })
+    }
 }
 
 /// The coordinates in the order of their declaration, right or wrong.
@@ -89,20 +108,23 @@ pub(crate) fn resolve(
     let mut scope = Scope::new(declaration);
     let mut lets = Vec::new();
     let (mut whole, mut kinetic, mut potential) = (None, None, None);
-    let mut constraints = Vec::new();
+    let (mut energies, mut constraints) = (Vec::new(), Vec::new());
     for item in &declaration.items {
         match item {
             Item::Coordinates(_) | Item::Unknown => {}
-            Item::Lagrangian { value, .. } => {
+            Item::Lagrangian { keyword, value } => {
                 let equation = scope.equation("the Lagrangian", value.as_ref(), graph, diagnostics);
+                energies.extend(Energy::of(keyword, &equation));
                 whole = whole.or(equation);
             }
-            Item::Kinetic { value, .. } => {
+            Item::Kinetic { keyword, value } => {
                 let equation = scope.equation("the kinetic energy", value.as_ref(), graph, diagnostics);
+                energies.extend(Energy::of(keyword, &equation));
                 kinetic = kinetic.or(equation);
             }
-            Item::Potential { value, .. } => {
+            Item::Potential { keyword, value } => {
                 let equation = scope.equation("the potential", value.as_ref(), graph, diagnostics);
+                energies.extend(Energy::of(keyword, &equation));
                 potential = potential.or(equation);
             }
             Item::Let(definition) => {
@@ -120,6 +142,7 @@ pub(crate) fn resolve(
     if !diagnostics.is_empty() {
         return None;
     }
+    energies.sort_by_key(|energy| energy.keyword == "potential");
     let (lagrangian, source) = match (whole, kinetic, potential) {
         (Some((value, source)), None, None) => (value, LagrangianSource::Whole(source)),
         (None, Some((kinetic, kinetic_source)), Some((potential, potential_source))) => (
@@ -139,6 +162,7 @@ pub(crate) fn resolve(
         parameters: parameters.collect(),
         named_constants: scope.into_named_constants(),
         lagrangian,
+        energies,
         source: Source {
             lets,
             lagrangian: source,

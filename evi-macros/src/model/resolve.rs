@@ -78,7 +78,7 @@ impl<'a> Scope<'a> {
         self.lets.insert(name, resolved.as_ref().map(|(value, _)| *value));
         let (value, source) = resolved?;
         let has_velocity = graph.dependence(value).on_v;
-        Some(SourceLet { name: definition.name.clone(), value: source, has_velocity })
+        Some(SourceLet { name: definition.name.clone(), value: source, root: value, has_velocity })
     }
 
     /// The residual `LHS − RHS` of a constraint, with its sides.

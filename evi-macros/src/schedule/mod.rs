@@ -27,6 +27,21 @@ pub(crate) struct Programs {
     pub(crate) constraint_curvature: Program,
 }
 
+impl Programs {
+    /// Every kernel by the name of its function, in the order of the trait.
+    pub(crate) fn kernels(&self) -> [(&'static str, &Program); 7] {
+        [
+            ("constants", &self.constants),
+            ("lagrangian", &self.lagrangian),
+            ("lagrangian_gradient", &self.lagrangian_gradient),
+            ("lagrangian_derivatives", &self.lagrangian_derivatives),
+            ("constraints", &self.constraints),
+            ("constraint_derivatives", &self.constraint_derivatives),
+            ("constraint_curvature", &self.constraint_curvature),
+        ]
+    }
+}
+
 /// The values that are computed once from the parameters.
 #[derive(Default)]
 pub(crate) struct ConstantSlots {

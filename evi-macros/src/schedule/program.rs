@@ -1,6 +1,6 @@
 //! Straight-line code for the values of some roots.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
 use crate::expr::{Cost, ExprId, Graph, Node, Unary};
@@ -83,6 +83,18 @@ impl Program {
         self.places.get(&id).copied()
     }
 
+    /// Statements of the emitted body: named values, and values that are handed on between scopes.
+    pub(crate) fn n_statements(&self) -> usize {
+        self.statements.len() + self.n_shared
+    }
+
+    /// Named values that are not outputs.
+    pub(crate) fn n_temporaries(&self) -> usize {
+        let outputs: HashSet<ExprId> = self.outputs.iter().copied().collect();
+        let names = self.statements.iter().flat_map(|statement| statement.values());
+        names.filter(|id| !outputs.contains(id)).count()
+    }
+
     /// Whether the program is a single scope, without values that leave it.
     pub(crate) fn is_single_scope(&self) -> bool {
         self.scopes.len() <= 1
@@ -155,6 +167,16 @@ impl Statement {
 }
 
 impl Operations {
+    /// What the expression of `root` costs.
+    pub(crate) fn below(graph: &Graph, root: ExprId) -> Self {
+        Self::of(graph, &graph.reachable(&[root], |_| false))
+    }
+
+    /// All operations together.
+    pub(crate) fn total(self) -> usize {
+        self.additions + self.multiplications + self.divisions + self.functions
+    }
+
     fn of(graph: &Graph, computed: &[ExprId]) -> Self {
         let mut operations = Self::default();
         for &id in computed {

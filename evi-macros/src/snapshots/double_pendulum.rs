@@ -216,11 +216,20 @@ const _: () = {
                 ],
                 t: &[],
             },
+            blocks: ::evi_core::__private::HessianBlocks {
+                qq: ::evi_core::__private::Block::Zero,
+                vq: ::evi_core::__private::Block::Zero,
+                vv: ::evi_core::__private::Block::Constant,
+                vt: ::evi_core::__private::Block::Zero,
+            },
             mass: ::evi_core::__private::Dependence {
                 on_q: false,
                 on_v: false,
                 on_t: false,
             },
+            mass_shape: ::evi_core::__private::MassShape::Diagonal,
+            potential: ::evi_core::__private::Potential::Affine,
+            momentum_vanishes_at_rest: true,
             lagrangian: ::evi_core::__private::Dependence {
                 on_q: true,
                 on_v: true,
@@ -231,6 +240,27 @@ const _: () = {
                 on_v: false,
                 on_t: false,
             },
+            each_constraint: &[
+                ::evi_core::__private::ConstraintStructure {
+                    gradient: ::evi_core::__private::Block::Varying(::evi_core::__private::Dependence {
+                        on_q: true,
+                        on_v: false,
+                        on_t: false,
+                    }),
+                    on_t: false,
+                    repeats: ::core::option::Option::None,
+                },
+                ::evi_core::__private::ConstraintStructure {
+                    gradient: ::evi_core::__private::Block::Varying(::evi_core::__private::Dependence {
+                        on_q: true,
+                        on_v: false,
+                        on_t: false,
+                    }),
+                    on_t: false,
+                    repeats: ::core::option::Option::None,
+                },
+            ],
+            constraint_graph: &[(0usize, 1usize)],
             operations: ::evi_core::__private::KernelOperations {
                 constants: ::evi_core::__private::Operations {
                     additions: 0usize,
@@ -275,6 +305,149 @@ const _: () = {
                     functions: 0usize,
                 },
             },
+        };
+        const REPORT: ::evi_core::__private::SystemReport = ::evi_core::__private::SystemReport {
+            name: "DoublePendulum",
+            coordinates: Self::COORDINATES,
+            constraints: Self::CONSTRAINTS,
+            parameters: Self::PARAMETERS,
+            equations: &[
+                ::evi_core::__private::Equation {
+                    name: "",
+                    left: ::evi_core::__private::Formula {
+                        unicode: "L",
+                        latex: "L",
+                    },
+                    right: ::evi_core::__private::Formula {
+                        unicode: "T − V",
+                        latex: "T - V",
+                    },
+                },
+                ::evi_core::__private::Equation {
+                    name: "",
+                    left: ::evi_core::__private::Formula {
+                        unicode: "T",
+                        latex: "T",
+                    },
+                    right: ::evi_core::__private::Formula {
+                        unicode: "½ m₁ (ẋ₁² + ẏ₁²) + ½ m₂ (ẋ₂² + ẏ₂²)",
+                        latex: "\\frac{1}{2} m_1 (\\dot{x}_1^2 + \\dot{y}_1^2) + \\frac{1}{2} m_2 (\\dot{x}_2^2 + \\dot{y}_2^2)",
+                    },
+                },
+                ::evi_core::__private::Equation {
+                    name: "",
+                    left: ::evi_core::__private::Formula {
+                        unicode: "V",
+                        latex: "V",
+                    },
+                    right: ::evi_core::__private::Formula {
+                        unicode: "g (m₁ y₁ + m₂ y₂)",
+                        latex: "g (m_1 y_1 + m_2 y_2)",
+                    },
+                },
+                ::evi_core::__private::Equation {
+                    name: "rod1",
+                    left: ::evi_core::__private::Formula {
+                        unicode: "x₁² + y₁²",
+                        latex: "x_1^2 + y_1^2",
+                    },
+                    right: ::evi_core::__private::Formula {
+                        unicode: "l₁²",
+                        latex: "l_1^2",
+                    },
+                },
+                ::evi_core::__private::Equation {
+                    name: "rod2",
+                    left: ::evi_core::__private::Formula {
+                        unicode: "(x₂ − x₁)² + (y₂ − y₁)²",
+                        latex: "(x_2 - x_1)^2 + (y_2 - y_1)^2",
+                    },
+                    right: ::evi_core::__private::Formula {
+                        unicode: "l₂²",
+                        latex: "l_2^2",
+                    },
+                },
+            ],
+            structure: Self::STRUCTURE,
+            kernels: &[
+                ::evi_core::__private::KernelReport {
+                    name: "constants",
+                    operations: ::evi_core::__private::Operations {
+                        additions: 0usize,
+                        multiplications: 6usize,
+                        divisions: 0usize,
+                        functions: 0usize,
+                    },
+                    temporaries: 0usize,
+                    statements: 6usize,
+                },
+                ::evi_core::__private::KernelReport {
+                    name: "lagrangian",
+                    operations: ::evi_core::__private::Operations {
+                        additions: 5usize,
+                        multiplications: 9usize,
+                        divisions: 0usize,
+                        functions: 0usize,
+                    },
+                    temporaries: 0usize,
+                    statements: 1usize,
+                },
+                ::evi_core::__private::KernelReport {
+                    name: "lagrangian_gradient",
+                    operations: ::evi_core::__private::Operations {
+                        additions: 0usize,
+                        multiplications: 4usize,
+                        divisions: 0usize,
+                        functions: 0usize,
+                    },
+                    temporaries: 0usize,
+                    statements: 4usize,
+                },
+                ::evi_core::__private::KernelReport {
+                    name: "lagrangian_derivatives",
+                    operations: ::evi_core::__private::Operations {
+                        additions: 0usize,
+                        multiplications: 4usize,
+                        divisions: 0usize,
+                        functions: 0usize,
+                    },
+                    temporaries: 0usize,
+                    statements: 4usize,
+                },
+                ::evi_core::__private::KernelReport {
+                    name: "constraints",
+                    operations: ::evi_core::__private::Operations {
+                        additions: 6usize,
+                        multiplications: 4usize,
+                        divisions: 0usize,
+                        functions: 0usize,
+                    },
+                    temporaries: 2usize,
+                    statements: 4usize,
+                },
+                ::evi_core::__private::KernelReport {
+                    name: "constraint_derivatives",
+                    operations: ::evi_core::__private::Operations {
+                        additions: 6usize,
+                        multiplications: 8usize,
+                        divisions: 0usize,
+                        functions: 0usize,
+                    },
+                    temporaries: 2usize,
+                    statements: 10usize,
+                },
+                ::evi_core::__private::KernelReport {
+                    name: "constraint_curvature",
+                    operations: ::evi_core::__private::Operations {
+                        additions: 4usize,
+                        multiplications: 8usize,
+                        divisions: 0usize,
+                        functions: 0usize,
+                    },
+                    temporaries: 2usize,
+                    statements: 4usize,
+                },
+            ],
         };
         type PerCoordinate<X: ::core::clone::Clone> = [X; 4usize];
         type PerConstraint<X: ::core::clone::Clone> = [X; 2usize];

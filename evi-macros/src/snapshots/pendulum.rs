@@ -37,11 +37,24 @@ const _: () = {
                 q: &[],
                 t: &[],
             },
+            blocks: ::evi_core::__private::HessianBlocks {
+                qq: ::evi_core::__private::Block::Varying(::evi_core::__private::Dependence {
+                    on_q: true,
+                    on_v: false,
+                    on_t: false,
+                }),
+                vq: ::evi_core::__private::Block::Zero,
+                vv: ::evi_core::__private::Block::Constant,
+                vt: ::evi_core::__private::Block::Zero,
+            },
             mass: ::evi_core::__private::Dependence {
                 on_q: false,
                 on_v: false,
                 on_t: false,
             },
+            mass_shape: ::evi_core::__private::MassShape::Diagonal,
+            potential: ::evi_core::__private::Potential::General,
+            momentum_vanishes_at_rest: true,
             lagrangian: ::evi_core::__private::Dependence {
                 on_q: true,
                 on_v: true,
@@ -52,6 +65,8 @@ const _: () = {
                 on_v: false,
                 on_t: false,
             },
+            each_constraint: &[],
+            constraint_graph: &[],
             operations: ::evi_core::__private::KernelOperations {
                 constants: ::evi_core::__private::Operations {
                     additions: 0usize,
@@ -96,6 +111,127 @@ const _: () = {
                     functions: 0usize,
                 },
             },
+        };
+        const REPORT: ::evi_core::__private::SystemReport = ::evi_core::__private::SystemReport {
+            name: "Pendulum",
+            coordinates: Self::COORDINATES,
+            constraints: Self::CONSTRAINTS,
+            parameters: Self::PARAMETERS,
+            equations: &[
+                ::evi_core::__private::Equation {
+                    name: "",
+                    left: ::evi_core::__private::Formula {
+                        unicode: "L",
+                        latex: "L",
+                    },
+                    right: ::evi_core::__private::Formula {
+                        unicode: "T − V",
+                        latex: "T - V",
+                    },
+                },
+                ::evi_core::__private::Equation {
+                    name: "",
+                    left: ::evi_core::__private::Formula {
+                        unicode: "T",
+                        latex: "T",
+                    },
+                    right: ::evi_core::__private::Formula {
+                        unicode: "½ m l² θ\u{307}²",
+                        latex: "\\frac{1}{2} m l^2 \\dot{\\theta}^2",
+                    },
+                },
+                ::evi_core::__private::Equation {
+                    name: "",
+                    left: ::evi_core::__private::Formula {
+                        unicode: "V",
+                        latex: "V",
+                    },
+                    right: ::evi_core::__private::Formula {
+                        unicode: "−m g l cos θ",
+                        latex: "-m g l \\cos \\theta",
+                    },
+                },
+            ],
+            structure: Self::STRUCTURE,
+            kernels: &[
+                ::evi_core::__private::KernelReport {
+                    name: "constants",
+                    operations: ::evi_core::__private::Operations {
+                        additions: 0usize,
+                        multiplications: 5usize,
+                        divisions: 0usize,
+                        functions: 0usize,
+                    },
+                    temporaries: 0usize,
+                    statements: 3usize,
+                },
+                ::evi_core::__private::KernelReport {
+                    name: "lagrangian",
+                    operations: ::evi_core::__private::Operations {
+                        additions: 1usize,
+                        multiplications: 3usize,
+                        divisions: 0usize,
+                        functions: 1usize,
+                    },
+                    temporaries: 1usize,
+                    statements: 2usize,
+                },
+                ::evi_core::__private::KernelReport {
+                    name: "lagrangian_gradient",
+                    operations: ::evi_core::__private::Operations {
+                        additions: 0usize,
+                        multiplications: 2usize,
+                        divisions: 0usize,
+                        functions: 1usize,
+                    },
+                    temporaries: 1usize,
+                    statements: 3usize,
+                },
+                ::evi_core::__private::KernelReport {
+                    name: "lagrangian_derivatives",
+                    operations: ::evi_core::__private::Operations {
+                        additions: 0usize,
+                        multiplications: 3usize,
+                        divisions: 0usize,
+                        functions: 2usize,
+                    },
+                    temporaries: 2usize,
+                    statements: 4usize,
+                },
+                ::evi_core::__private::KernelReport {
+                    name: "constraints",
+                    operations: ::evi_core::__private::Operations {
+                        additions: 0usize,
+                        multiplications: 0usize,
+                        divisions: 0usize,
+                        functions: 0usize,
+                    },
+                    temporaries: 0usize,
+                    statements: 0usize,
+                },
+                ::evi_core::__private::KernelReport {
+                    name: "constraint_derivatives",
+                    operations: ::evi_core::__private::Operations {
+                        additions: 0usize,
+                        multiplications: 0usize,
+                        divisions: 0usize,
+                        functions: 0usize,
+                    },
+                    temporaries: 0usize,
+                    statements: 0usize,
+                },
+                ::evi_core::__private::KernelReport {
+                    name: "constraint_curvature",
+                    operations: ::evi_core::__private::Operations {
+                        additions: 0usize,
+                        multiplications: 0usize,
+                        divisions: 0usize,
+                        functions: 0usize,
+                    },
+                    temporaries: 0usize,
+                    statements: 0usize,
+                },
+            ],
         };
         type PerCoordinate<X: ::core::clone::Clone> = [X; 1usize];
         type PerConstraint<X: ::core::clone::Clone> = [X; 0usize];

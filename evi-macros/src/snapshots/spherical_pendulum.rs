@@ -146,11 +146,20 @@ const _: () = {
                 ],
                 t: &[],
             },
+            blocks: ::evi_core::__private::HessianBlocks {
+                qq: ::evi_core::__private::Block::Zero,
+                vq: ::evi_core::__private::Block::Zero,
+                vv: ::evi_core::__private::Block::Constant,
+                vt: ::evi_core::__private::Block::Zero,
+            },
             mass: ::evi_core::__private::Dependence {
                 on_q: false,
                 on_v: false,
                 on_t: false,
             },
+            mass_shape: ::evi_core::__private::MassShape::Diagonal,
+            potential: ::evi_core::__private::Potential::Affine,
+            momentum_vanishes_at_rest: true,
             lagrangian: ::evi_core::__private::Dependence {
                 on_q: true,
                 on_v: true,
@@ -161,6 +170,18 @@ const _: () = {
                 on_v: false,
                 on_t: false,
             },
+            each_constraint: &[
+                ::evi_core::__private::ConstraintStructure {
+                    gradient: ::evi_core::__private::Block::Varying(::evi_core::__private::Dependence {
+                        on_q: true,
+                        on_v: false,
+                        on_t: false,
+                    }),
+                    on_t: false,
+                    repeats: ::core::option::Option::None,
+                },
+            ],
+            constraint_graph: &[],
             operations: ::evi_core::__private::KernelOperations {
                 constants: ::evi_core::__private::Operations {
                     additions: 0usize,
@@ -205,6 +226,138 @@ const _: () = {
                     functions: 0usize,
                 },
             },
+        };
+        const REPORT: ::evi_core::__private::SystemReport = ::evi_core::__private::SystemReport {
+            name: "SphericalPendulum",
+            coordinates: Self::COORDINATES,
+            constraints: Self::CONSTRAINTS,
+            parameters: Self::PARAMETERS,
+            equations: &[
+                ::evi_core::__private::Equation {
+                    name: "",
+                    left: ::evi_core::__private::Formula {
+                        unicode: "L",
+                        latex: "L",
+                    },
+                    right: ::evi_core::__private::Formula {
+                        unicode: "T − V",
+                        latex: "T - V",
+                    },
+                },
+                ::evi_core::__private::Equation {
+                    name: "",
+                    left: ::evi_core::__private::Formula {
+                        unicode: "T",
+                        latex: "T",
+                    },
+                    right: ::evi_core::__private::Formula {
+                        unicode: "½ m (ẋ² + ẏ² + ż²)",
+                        latex: "\\frac{1}{2} m (\\dot{x}^2 + \\dot{y}^2 + \\dot{z}^2)",
+                    },
+                },
+                ::evi_core::__private::Equation {
+                    name: "",
+                    left: ::evi_core::__private::Formula {
+                        unicode: "V",
+                        latex: "V",
+                    },
+                    right: ::evi_core::__private::Formula {
+                        unicode: "m g z",
+                        latex: "m g z",
+                    },
+                },
+                ::evi_core::__private::Equation {
+                    name: "rod",
+                    left: ::evi_core::__private::Formula {
+                        unicode: "x² + y² + z²",
+                        latex: "x^2 + y^2 + z^2",
+                    },
+                    right: ::evi_core::__private::Formula {
+                        unicode: "l²",
+                        latex: "l^2",
+                    },
+                },
+            ],
+            structure: Self::STRUCTURE,
+            kernels: &[
+                ::evi_core::__private::KernelReport {
+                    name: "constants",
+                    operations: ::evi_core::__private::Operations {
+                        additions: 0usize,
+                        multiplications: 3usize,
+                        divisions: 0usize,
+                        functions: 0usize,
+                    },
+                    temporaries: 0usize,
+                    statements: 4usize,
+                },
+                ::evi_core::__private::KernelReport {
+                    name: "lagrangian",
+                    operations: ::evi_core::__private::Operations {
+                        additions: 3usize,
+                        multiplications: 5usize,
+                        divisions: 0usize,
+                        functions: 0usize,
+                    },
+                    temporaries: 0usize,
+                    statements: 1usize,
+                },
+                ::evi_core::__private::KernelReport {
+                    name: "lagrangian_gradient",
+                    operations: ::evi_core::__private::Operations {
+                        additions: 0usize,
+                        multiplications: 3usize,
+                        divisions: 0usize,
+                        functions: 0usize,
+                    },
+                    temporaries: 0usize,
+                    statements: 3usize,
+                },
+                ::evi_core::__private::KernelReport {
+                    name: "lagrangian_derivatives",
+                    operations: ::evi_core::__private::Operations {
+                        additions: 0usize,
+                        multiplications: 3usize,
+                        divisions: 0usize,
+                        functions: 0usize,
+                    },
+                    temporaries: 0usize,
+                    statements: 3usize,
+                },
+                ::evi_core::__private::KernelReport {
+                    name: "constraints",
+                    operations: ::evi_core::__private::Operations {
+                        additions: 3usize,
+                        multiplications: 3usize,
+                        divisions: 0usize,
+                        functions: 0usize,
+                    },
+                    temporaries: 0usize,
+                    statements: 1usize,
+                },
+                ::evi_core::__private::KernelReport {
+                    name: "constraint_derivatives",
+                    operations: ::evi_core::__private::Operations {
+                        additions: 3usize,
+                        multiplications: 6usize,
+                        divisions: 0usize,
+                        functions: 0usize,
+                    },
+                    temporaries: 0usize,
+                    statements: 4usize,
+                },
+                ::evi_core::__private::KernelReport {
+                    name: "constraint_curvature",
+                    operations: ::evi_core::__private::Operations {
+                        additions: 2usize,
+                        multiplications: 6usize,
+                        divisions: 0usize,
+                        functions: 0usize,
+                    },
+                    temporaries: 0usize,
+                    statements: 1usize,
+                },
+            ],
         };
         type PerCoordinate<X: ::core::clone::Clone> = [X; 3usize];
         type PerConstraint<X: ::core::clone::Clone> = [X; 1usize];

@@ -1,7 +1,11 @@
 //! What is zero, constant, or varying in the derivatives.
 //!
 //! In: [`Equations`]. Out: for every nonzero second derivative of `L` and first derivative of `φ` its place, and whether
-//! its value is computed once from the parameters or by a kernel.
+//! its value is computed once from the parameters or by a kernel; and the kind of the equations as a whole.
+
+mod classify;
+
+pub(crate) use classify::{Block, Classification, ConstraintStructure, MassShape, Potential};
 
 mod elimination;
 
@@ -32,6 +36,8 @@ pub(crate) struct Structure {
     pub(crate) lagrangian: Dependence,
     /// What `φ` depends on.
     pub(crate) constraints: Dependence,
+    /// The kind of the equations.
+    pub(crate) classification: Classification,
 }
 
 /// A nonzero entry of a matrix.
@@ -53,10 +59,10 @@ pub(crate) enum EntryValue {
 pub(crate) fn analyze(graph: &Graph, equations: &Equations) -> Structure {
     let mut constant_entries = Vec::new();
     let (mut hessian_entries, mut jacobian_entries) = (Vec::new(), Vec::new());
-    let mut hessian = |partials| classify(graph, partials, &mut constant_entries, &mut hessian_entries);
+    let mut hessian = |partials| places(graph, partials, &mut constant_entries, &mut hessian_entries);
     let (hessian_qq, hessian_vq) = (hessian(&equations.hessian_qq), hessian(&equations.hessian_vq));
     let (hessian_vv, hessian_vt) = (hessian(&equations.hessian_vv), hessian(&equations.hessian_vt));
-    let mut jacobian = |partials| classify(graph, partials, &mut constant_entries, &mut jacobian_entries);
+    let mut jacobian = |partials| places(graph, partials, &mut constant_entries, &mut jacobian_entries);
     let (jacobian_q, jacobian_t) = (jacobian(&equations.jacobian_q), jacobian(&equations.jacobian_t));
     Structure {
         hessian_qq,
@@ -71,6 +77,7 @@ pub(crate) fn analyze(graph: &Graph, equations: &Equations) -> Structure {
         mass: union(graph, equations.hessian_vv.iter().map(|partial| partial.value)),
         lagrangian: graph.dependence(equations.lagrangian),
         constraints: union(graph, equations.constraints.iter().copied()),
+        classification: classify::classify(graph, equations),
     }
 }
 
@@ -78,7 +85,7 @@ fn union(graph: &Graph, roots: impl Iterator<Item = ExprId>) -> Dependence {
     roots.fold(Dependence::default(), |union, root| union.union(graph.dependence(root)))
 }
 
-fn classify(
+fn places(
     graph: &Graph,
     partials: &[Partial],
     constants: &mut Vec<ExprId>,

@@ -4,6 +4,12 @@
 //! `φ(t, q) = 0` with Jacobian `G = ∂φ/∂q` (`m × n`). The derive emits its kernels, its structure and the storage
 //! types of its index sets; nothing here loops over nodes or iterates.
 
+mod classification;
+mod report;
+
+pub use classification::{Block, ConstraintStructure, HessianBlocks, MassShape, Potential};
+pub use report::{Equation, Formula, KernelReport, SystemReport};
+
 use crate::array::Array;
 use crate::linear::Factorization;
 use crate::scalar::Scalar;
@@ -25,6 +31,10 @@ pub trait MechanicalSystem: Sized {
     const PARAMETERS: &'static [&'static str];
     /// What is zero, constant, or varying in the derivatives of `L` and `φ`, and what evaluating them costs.
     const STRUCTURE: Structure;
+    /// The equations and what became of them, to print and read.
+    const REPORT: SystemReport;
+    /// The text of the generated code but for [`REPORT`](Self::REPORT), with the feature `source`.
+    const SOURCE: Option<&'static str> = None;
 
     /// One value per coordinate.
     type PerCoordinate<X: Clone>: Array<X>;
@@ -118,12 +128,24 @@ pub struct Structure {
     pub hessian: HessianPattern,
     /// Nonzero derivatives of `φ`.
     pub jacobian: JacobianPattern,
+    /// What each block of the Hessian depends on.
+    pub blocks: HessianBlocks,
     /// On what the mass matrix `∂²L/∂v²` depends.
     pub mass: Dependence,
+    /// Pattern of the mass matrix.
+    pub mass_shape: MassShape,
+    /// The potential as a function of `q`.
+    pub potential: Potential,
+    /// Whether `∂L/∂v(t, q, 0) = 0`: a system at rest has no momentum.
+    pub momentum_vanishes_at_rest: bool,
     /// On what `L` depends.
     pub lagrangian: Dependence,
     /// On what `φ` depends.
     pub constraints: Dependence,
+    /// Each constraint by itself.
+    pub each_constraint: &'static [ConstraintStructure],
+    /// Pairs of constraints that share a coordinate, `(smaller, larger)` index.
+    pub constraint_graph: &'static [(usize, usize)],
     /// Operations of each kernel.
     pub operations: KernelOperations,
 }
@@ -137,9 +159,15 @@ impl Structure {
         Self {
             hessian: HessianPattern { qq: &[], vq: &[], vv: &[], vt: &[] },
             jacobian: JacobianPattern { q: &[], t: &[] },
+            blocks: HessianBlocks { qq: Block::Zero, vq: Block::Zero, vv: Block::Zero, vt: Block::Zero },
             mass: NOTHING,
+            mass_shape: MassShape::Diagonal,
+            potential: Potential::Zero,
+            momentum_vanishes_at_rest: false,
             lagrangian: NOTHING,
             constraints: NOTHING,
+            each_constraint: &[],
+            constraint_graph: &[],
             operations: KernelOperations {
                 constants: NONE,
                 lagrangian: NONE,
@@ -160,6 +188,11 @@ impl Structure {
     /// Whether no second derivative of `L` couples two coordinates: every matrix of a step is diagonal.
     pub const fn is_uncoupled(&self) -> bool {
         is_diagonal(self.hessian.qq) && is_diagonal(self.hessian.vq) && is_diagonal(self.hessian.vv)
+    }
+
+    /// Whether neither `L` nor `φ` depends on time.
+    pub const fn is_autonomous(&self) -> bool {
+        !(self.lagrangian.on_t || self.constraints.on_t)
     }
 
     /// Whether `L = ½ vᵀ M v − V(t, q)` with constant `M`.

@@ -1,0 +1,59 @@
+//! What there is to tell about a system, as constants.
+
+use proc_macro2::TokenStream;
+use quote::quote;
+
+use super::implementation::operations;
+use crate::model::{Formula, WrittenEquation};
+use crate::schedule::Programs;
+use crate::syntax::Declaration;
+
+/// `MechanicalSystem::REPORT`.
+pub(super) fn report(
+    declaration: &Declaration,
+    written: &[WrittenEquation],
+    programs: &Programs,
+) -> TokenStream {
+    let name = declaration.name.to_string();
+    let equations = written.iter().map(|WrittenEquation { name, left, right }| {
+        let (left, right) = (formula(left), formula(right));
+        quote!(::evi_core::__private::Equation { name: #name, left: #left, right: #right })
+    });
+    let kernels = programs.kernels().into_iter().map(|(name, program)| {
+        let operations = operations(program.operations);
+        let (temporaries, statements) = (program.n_temporaries(), program.n_statements());
+        quote!(::evi_core::__private::KernelReport {
+            name: #name,
+            operations: #operations,
+            temporaries: #temporaries,
+            statements: #statements,
+        })
+    });
+    quote! {
+        const REPORT: ::evi_core::__private::SystemReport = ::evi_core::__private::SystemReport {
+            name: #name,
+            coordinates: Self::COORDINATES,
+            constraints: Self::CONSTRAINTS,
+            parameters: Self::PARAMETERS,
+            equations: &[#(#equations),*],
+            structure: Self::STRUCTURE,
+            kernels: &[#(#kernels),*],
+        };
+    }
+}
+
+/// `MechanicalSystem::SOURCE` with the feature `source`, otherwise nothing: the text of `expansion`.
+pub(super) fn source(expansion: impl Fn() -> TokenStream) -> TokenStream {
+    if !cfg!(feature = "source") {
+        return TokenStream::new();
+    }
+    let text = expansion().to_string();
+    quote! {
+        const SOURCE: ::core::option::Option<&'static str> = ::core::option::Option::Some(#text);
+    }
+}
+
+fn formula(formula: &Formula) -> TokenStream {
+    let Formula { unicode, latex } = formula;
+    quote!(::evi_core::__private::Formula { unicode: #unicode, latex: #latex })
+}

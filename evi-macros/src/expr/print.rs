@@ -1,0 +1,680 @@
+//! Expressions as people write them: `½ m₁ ẋ₁²`, `\frac{1}{2} m_1 \dot{x}_1^2`.
+//!
+//! In: a node and the names of its symbols. Out: its text in one of two notations, a pure function of the
+//! graph. Only what does not change the meaning is tidied: nested sums and products become flat, the signs of
+//! factors move in front, functions without parentheses move to the end of their product. A long expression
+//! is abbreviated by `…`.
+
+use std::cell::Cell;
+use std::collections::HashMap;
+
+use super::{Binary, ExprId, Graph, Node, Symbol, Unary};
+
+/// Nodes that are printed of one expression, about ten lines of text: what is beyond them is an ellipsis.
+const LONGEST_EXPRESSION: usize = 400;
+
+/// How formulas are written.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Notation {
+    Unicode,
+    Latex,
+}
+
+/// What symbols and shared expressions are called.
+pub(crate) struct Names<'a> {
+    /// The name of a symbol in the source; that of its coordinate for a velocity.
+    pub(crate) symbol: &'a dyn Fn(Symbol) -> String,
+    /// Nodes that are written as a name.
+    pub(crate) shared: &'a HashMap<ExprId, String>,
+}
+
+/// The text of `root`.
+pub(crate) fn print(graph: &Graph, root: ExprId, names: &Names<'_>, notation: Notation) -> String {
+    Printer::new(graph, root, names, notation, None).sum(root).text
+}
+
+/// The text of what a shared expression stands for: its own name is not used.
+pub(crate) fn print_definition(graph: &Graph, root: ExprId, names: &Names<'_>, notation: Notation) -> String {
+    Printer::new(graph, root, names, notation, Some(root)).sum(root).text
+}
+
+/// The text of a name: Greek letters, and digits at its end as an index.
+pub(crate) fn print_name(name: &str, notation: Notation) -> String {
+    symbol(name, false, notation)
+}
+
+/// How tightly an expression holds together.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Level {
+    Sum,
+    Product,
+    /// A function before an argument without parentheses: `sin θ`.
+    Function,
+    Power,
+    Atom,
+}
+
+struct Text {
+    text: String,
+    level: Level,
+}
+
+impl Text {
+    fn atom(text: impl Into<String>) -> Self {
+        Self { text: text.into(), level: Level::Atom }
+    }
+}
+
+struct Printer<'a> {
+    graph: &'a Graph,
+    names: &'a Names<'a>,
+    notation: Notation,
+    /// The shared expression that is being defined.
+    defined: Option<ExprId>,
+    /// Nodes below each node, counted as often as they are printed.
+    sizes: HashMap<ExprId, usize>,
+    remaining: Cell<usize>,
+}
+
+/// The factors of a product, without its sign.
+#[derive(Default)]
+struct Factors {
+    is_negative: bool,
+    above: Vec<ExprId>,
+    below: Vec<ExprId>,
+}
+
+impl<'a> Printer<'a> {
+    fn new(
+        graph: &'a Graph,
+        root: ExprId,
+        names: &'a Names<'a>,
+        notation: Notation,
+        defined: Option<ExprId>,
+    ) -> Self {
+        let is_leaf = |id| names.shared.contains_key(&id) && defined != Some(id);
+        let sizes = tree_sizes(graph, root, is_leaf);
+        Self { graph, names, notation, defined, sizes, remaining: Cell::new(LONGEST_EXPRESSION) }
+    }
+
+    fn is_latex(&self) -> bool {
+        self.notation == Notation::Latex
+    }
+
+    /// Whether the node is printed as its own name, whatever is below it.
+    fn shared(&self, id: ExprId) -> Option<&String> {
+        self.names.shared.get(&id).filter(|_| self.defined != Some(id))
+    }
+
+    /// What the node is, unless it goes by a name.
+    fn node(&self, id: ExprId) -> Option<Node> {
+        self.shared(id).is_none().then(|| self.graph.node(id))
+    }
+
+    fn expression(&self, id: ExprId) -> Text {
+        match self.shared(id) {
+            Some(name) => {
+                self.count_one();
+                Text::atom(symbol(name, false, self.notation))
+            }
+            None if self.sizes[&id] > self.remaining.get() => {
+                self.remaining.set(0);
+                Text::atom(self.ellipsis())
+            }
+            None => match self.graph.node(id) {
+                Node::Number(number) => self.number(number.value()),
+                Node::Symbol(name) => self.symbol(name),
+                Node::Binary(Binary::Add | Binary::Sub, ..) => self.sum(id),
+                Node::Unary(Unary::Neg, _) | Node::Binary(Binary::Mul | Binary::Div, ..) => self.sum(id),
+                Node::Unary(operator, x) => self.function(operator, x, None),
+                Node::Power(base, exponent) => self.power(base, &exponent.to_string()),
+                Node::Binary(Binary::Powf, a, b) => self.real_power(a, b),
+                Node::Binary(Binary::Atan2, a, b) => {
+                    let (a, b) = (self.sum(a).text, self.sum(b).text);
+                    let name = if self.is_latex() { "\\operatorname{atan2}" } else { "atan2" };
+                    Text::atom(format!("{name}{}", self.parentheses(&format!("{a}, {b}"))))
+                }
+            },
+        }
+    }
+
+    fn ellipsis(&self) -> &'static str {
+        if self.is_latex() { "\\dots" } else { "…" }
+    }
+
+    fn count_one(&self) {
+        self.remaining.set(self.remaining.get().saturating_sub(1));
+    }
+
+    /// A sum with its terms side by side; a single term is a sum of one.
+    fn sum(&self, id: ExprId) -> Text {
+        let terms = self.terms(id);
+        if let [(false, term)] = terms.as_slice() {
+            return self.term(*term, false);
+        }
+        let mut text = String::new();
+        for (position, &(is_negative, term)) in terms.iter().enumerate() {
+            if self.remaining.get() == 0 {
+                text += &format!(" + {}", self.ellipsis());
+                break;
+            }
+            let factors = self.factors(term);
+            let is_negative = is_negative != factors.is_negative;
+            let minus = if self.is_latex() { "-" } else { "−" };
+            match (position, is_negative) {
+                (0, false) => {}
+                (0, true) => text += minus,
+                (_, false) => text += " + ",
+                (_, true) => text += &format!(" {minus} "),
+            }
+            let printed = self.product(&factors);
+            // A difference behind a minus, the only sum that stands among terms.
+            text += &if printed.level == Level::Sum { self.parentheses(&printed.text) } else { printed.text };
+        }
+        Text { text, level: Level::Sum }
+    }
+
+    /// A term that is no sum, with its sign.
+    fn term(&self, id: ExprId, is_negative: bool) -> Text {
+        let factors = self.factors(id);
+        let printed = self.product(&factors);
+        if factors.is_negative == is_negative {
+            return printed;
+        }
+        let minus = if self.is_latex() { "-" } else { "−" };
+        Text { text: format!("{minus}{}", printed.text), level: Level::Sum }
+    }
+
+    /// The terms of nested sums, with the sign in front of each; `a − (b + c)` keeps its parentheses. No more
+    /// than can be printed.
+    fn terms(&self, id: ExprId) -> Vec<(bool, ExprId)> {
+        let mut terms = Vec::new();
+        let mut pending = vec![(false, id)];
+        while let Some((is_negative, id)) = pending.pop() {
+            match self.node(id) {
+                Some(Node::Binary(Binary::Add, a, b)) if !is_negative => {
+                    pending.extend([(false, b), (false, a)]);
+                }
+                Some(Node::Binary(Binary::Sub, a, b)) if !is_negative => {
+                    pending.extend([(true, b), (false, a)]);
+                }
+                Some(Node::Unary(Unary::Neg, x)) => pending.push((!is_negative, x)),
+                _ => terms.push((is_negative, id)),
+            }
+            if terms.len() > LONGEST_EXPRESSION {
+                break;
+            }
+        }
+        terms
+    }
+
+    /// The factors of nested products and quotients.
+    fn factors(&self, id: ExprId) -> Factors {
+        let mut factors = Factors::default();
+        let mut pending = vec![(false, id)];
+        while let Some((is_below, id)) = pending.pop() {
+            match self.node(id) {
+                Some(Node::Binary(Binary::Mul, a, b)) => pending.extend([(is_below, b), (is_below, a)]),
+                Some(Node::Binary(Binary::Div, a, b)) => pending.extend([(!is_below, b), (is_below, a)]),
+                Some(Node::Unary(Unary::Neg, x)) => {
+                    factors.is_negative = !factors.is_negative;
+                    pending.push((is_below, x));
+                }
+                _ if is_below => factors.below.push(id),
+                _ => factors.above.push(id),
+            }
+            if factors.above.len() + factors.below.len() > LONGEST_EXPRESSION {
+                break;
+            }
+        }
+        factors
+    }
+
+    /// Factors side by side, as a fraction if some divide.
+    fn product(&self, factors: &Factors) -> Text {
+        match (factors.above.as_slice(), factors.below.as_slice()) {
+            ([factor], []) if self.is_flat(*factor) => self.expression(*factor),
+            ([factor], []) => self.sum(*factor),
+            (above, []) => self.side_by_side(above),
+            (above, below) => {
+                let one = Text::atom("1");
+                let below = self.side_by_side(below);
+                if !self.is_latex() {
+                    let above = if above.is_empty() { one } else { self.side_by_side(above) };
+                    let above = self.at_least(Level::Product, above);
+                    let text = format!("{above}/{}", self.at_least(Level::Power, below));
+                    return Text { text, level: Level::Product };
+                }
+                // A number in front stays there.
+                let (number, above) = match above {
+                    [first, rest @ ..] if !rest.is_empty() && self.graph.as_number(*first).is_some() => {
+                        (format!("{} ", self.expression(*first).text), rest)
+                    }
+                    all => (String::new(), all),
+                };
+                let above = if above.is_empty() { one } else { self.side_by_side(above) };
+                let text = format!("{number}\\frac{{{}}}{{{}}}", above.text, below.text);
+                Text { text, level: Level::Product }
+            }
+        }
+    }
+
+    /// Whether `expression` does not come back to sums or products.
+    fn is_flat(&self, id: ExprId) -> bool {
+        !matches!(self.node(id), Some(Node::Binary(Binary::Add | Binary::Sub, ..)))
+    }
+
+    fn side_by_side(&self, factors: &[ExprId]) -> Text {
+        let is_alone = factors.len() == 1;
+        let mut printed = Vec::new();
+        for &factor in factors {
+            printed.push(self.expression(factor));
+            if self.remaining.get() == 0 {
+                break;
+            }
+        }
+        if is_alone {
+            return printed.remove(0);
+        }
+        // `sin θ x` would be read as `sin (θ x)`.
+        printed.sort_by_key(|factor| factor.level == Level::Function);
+        let mut text = String::new();
+        for factor in printed {
+            let factor = self.at_least(Level::Function, factor);
+            if !text.is_empty() {
+                let begins_with_digit = factor.starts_with(|c: char| c.is_ascii_digit() || "½¼¾".contains(c));
+                text += match (begins_with_digit, self.notation) {
+                    (true, Notation::Unicode) => " · ",
+                    (true, Notation::Latex) => " \\cdot ",
+                    (false, _) => " ",
+                };
+            }
+            text += &factor;
+        }
+        Text { text, level: Level::Product }
+    }
+
+    /// The text, in parentheses if it does not hold together well enough.
+    fn at_least(&self, level: Level, printed: Text) -> String {
+        if printed.level < level { self.parentheses(&printed.text) } else { printed.text }
+    }
+
+    fn parentheses(&self, text: &str) -> String {
+        // Plain parentheses around what is no higher than a line.
+        let is_high = ["\\frac", "\\sqrt"].iter().any(|high| text.contains(high));
+        if self.is_latex() && is_high { format!("\\left({text}\\right)") } else { format!("({text})") }
+    }
+
+    fn power(&self, base: ExprId, exponent: &str) -> Text {
+        let raised = match self.notation {
+            Notation::Unicode => exponent.chars().map(superscript).collect(),
+            Notation::Latex if exponent.chars().count() == 1 => format!("^{exponent}"),
+            Notation::Latex => format!("^{{{exponent}}}"),
+        };
+        match self.node(base) {
+            _ if exponent == "1" => self.expression(base),
+            // The power of a function is written at its name; −1 would be read as the inverse function.
+            Some(Node::Unary(operator, x)) if has_name(operator) && exponent != "-1" => {
+                self.function(operator, x, Some(raised))
+            }
+            _ => {
+                let base = self.expression(base);
+                Text { text: self.at_least(Level::Atom, base) + &raised, level: Level::Power }
+            }
+        }
+    }
+
+    fn real_power(&self, base: ExprId, exponent: ExprId) -> Text {
+        let base = self.expression(base);
+        let base = self.at_least(Level::Atom, base);
+        let exponent = self.sum(exponent);
+        let text = match self.notation {
+            Notation::Unicode => format!("{base}^{}", self.at_least(Level::Atom, exponent)),
+            Notation::Latex => format!("{base}^{{{}}}", exponent.text),
+        };
+        Text { text, level: Level::Power }
+    }
+
+    fn function(&self, operator: Unary, x: ExprId, raised: Option<String>) -> Text {
+        let argument = self.expression(x);
+        match (operator, self.notation) {
+            (Unary::Sqrt, Notation::Latex) => return Text::atom(format!("\\sqrt{{{}}}", argument.text)),
+            (Unary::Sqrt, Notation::Unicode) => {
+                let text = format!("√{}", self.at_least(Level::Atom, argument));
+                return Text { text, level: Level::Power };
+            }
+            (Unary::Abs, Notation::Latex) => {
+                return Text::atom(format!("\\left|{}\\right|", argument.text));
+            }
+            (Unary::Abs, Notation::Unicode) => return Text::atom(format!("|{}|", argument.text)),
+            (Unary::Exp, Notation::Latex) => {
+                return Text { text: format!("e^{{{}}}", argument.text), level: Level::Power };
+            }
+            _ => {}
+        }
+        let name = match self.notation {
+            Notation::Unicode => function_names(operator).0,
+            Notation::Latex => function_names(operator).1,
+        };
+        let (raised, level) = (raised.unwrap_or_default(), Level::Function);
+        if argument.level == Level::Atom && operator != Unary::Exp {
+            return Text { text: format!("{name}{raised} {}", argument.text), level };
+        }
+        // With its parentheses it ends where they do, and needs no place at the end.
+        Text { text: format!("{name}{raised}{}", self.parentheses(&argument.text)), level: Level::Power }
+    }
+
+    fn number(&self, value: f64) -> Text {
+        self.count_one();
+        let fraction = FRACTIONS.iter().find(|(number, ..)| *number == value);
+        match (fraction, self.notation) {
+            (Some((_, text, _)), Notation::Unicode) => Text::atom(*text),
+            (Some((.., text)), Notation::Latex) => Text { text: (*text).to_owned(), level: Level::Power },
+            (None, _) if value == 0.0 || (1e-4..1e6).contains(&value.abs()) => {
+                let level = if value < 0.0 { Level::Sum } else { Level::Atom };
+                Text { text: value.to_string(), level }
+            }
+            (None, notation) => {
+                let scientific = format!("{value:e}");
+                let (digits, exponent) = scientific.split_once('e').expect("the format has an exponent");
+                let text = match notation {
+                    Notation::Unicode => {
+                        format!("{digits} · 10{}", exponent.chars().map(superscript).collect::<String>())
+                    }
+                    Notation::Latex => format!("{digits} \\cdot 10^{{{exponent}}}"),
+                };
+                Text { text, level: Level::Product }
+            }
+        }
+    }
+
+    fn symbol(&self, name: Symbol) -> Text {
+        self.count_one();
+        let is_velocity = matches!(name, Symbol::Velocity(_));
+        Text::atom(symbol(&(self.names.symbol)(name), is_velocity, self.notation))
+    }
+}
+
+/// Nodes of the trees below `root`, as far as a `usize` counts.
+fn tree_sizes(graph: &Graph, root: ExprId, is_leaf: impl Fn(ExprId) -> bool) -> HashMap<ExprId, usize> {
+    let mut sizes: HashMap<ExprId, usize> = HashMap::new();
+    for id in graph.reachable(&[root], &is_leaf) {
+        if is_leaf(id) {
+            sizes.insert(id, 1);
+            continue;
+        }
+        let below = graph.operands(id).map(|operand| sizes[&operand]).fold(0, usize::saturating_add);
+        sizes.insert(id, below.saturating_add(1));
+    }
+    sizes
+}
+
+/// Numbers that are better known as fractions.
+const FRACTIONS: [(f64, &str, &str); 3] =
+    [(0.5, "½", "\\frac{1}{2}"), (0.25, "¼", "\\frac{1}{4}"), (0.75, "¾", "\\frac{3}{4}")];
+
+/// Whether a function is written by its name, which can carry an exponent.
+fn has_name(operator: Unary) -> bool {
+    !matches!(operator, Unary::Neg | Unary::Sqrt | Unary::Abs | Unary::Exp)
+}
+
+/// Unicode and LaTeX.
+fn function_names(operator: Unary) -> (&'static str, &'static str) {
+    match operator {
+        Unary::Neg => ("−", "-"),
+        Unary::Sqrt => ("√", "\\sqrt"),
+        Unary::Sin => ("sin", "\\sin"),
+        Unary::Cos => ("cos", "\\cos"),
+        Unary::Tan => ("tan", "\\tan"),
+        Unary::Exp => ("exp", "\\exp"),
+        Unary::Ln => ("ln", "\\ln"),
+        Unary::Asin => ("arcsin", "\\arcsin"),
+        Unary::Acos => ("arccos", "\\arccos"),
+        Unary::Atan => ("arctan", "\\arctan"),
+        Unary::Sinh => ("sinh", "\\sinh"),
+        Unary::Cosh => ("cosh", "\\cosh"),
+        Unary::Tanh => ("tanh", "\\tanh"),
+        Unary::Abs => ("abs", "\\operatorname{abs}"),
+        Unary::Signum => ("sgn", "\\operatorname{sgn}"),
+    }
+}
+
+/// Name, character, LaTeX.
+const GREEK: [(&str, char, &str); 34] = [
+    ("alpha", 'α', "\\alpha"),
+    ("beta", 'β', "\\beta"),
+    ("gamma", 'γ', "\\gamma"),
+    ("delta", 'δ', "\\delta"),
+    ("epsilon", 'ε', "\\varepsilon"),
+    ("zeta", 'ζ', "\\zeta"),
+    ("eta", 'η', "\\eta"),
+    ("theta", 'θ', "\\theta"),
+    ("iota", 'ι', "\\iota"),
+    ("kappa", 'κ', "\\kappa"),
+    ("lambda", 'λ', "\\lambda"),
+    ("mu", 'μ', "\\mu"),
+    ("nu", 'ν', "\\nu"),
+    ("xi", 'ξ', "\\xi"),
+    ("pi", 'π', "\\pi"),
+    ("rho", 'ρ', "\\rho"),
+    ("sigma", 'σ', "\\sigma"),
+    ("tau", 'τ', "\\tau"),
+    ("upsilon", 'υ', "\\upsilon"),
+    ("phi", 'φ', "\\varphi"),
+    ("chi", 'χ', "\\chi"),
+    ("psi", 'ψ', "\\psi"),
+    ("omega", 'ω', "\\omega"),
+    ("PI", 'π', "\\pi"),
+    ("Gamma", 'Γ', "\\Gamma"),
+    ("Delta", 'Δ', "\\Delta"),
+    ("Theta", 'Θ', "\\Theta"),
+    ("Lambda", 'Λ', "\\Lambda"),
+    ("Xi", 'Ξ', "\\Xi"),
+    ("Sigma", 'Σ', "\\Sigma"),
+    ("Phi", 'Φ', "\\Phi"),
+    ("Psi", 'Ψ', "\\Psi"),
+    ("Omega", 'Ω', "\\Omega"),
+    ("Pi", 'Π', "\\Pi"),
+];
+
+/// A name, with a dot above it for a velocity.
+fn symbol(name: &str, has_dot: bool, notation: Notation) -> String {
+    // The last segment of a path; a raw identifier without its mark.
+    let name = name.rsplit("::").next().unwrap_or(name).trim();
+    let name = name.strip_prefix("r#").unwrap_or(name);
+    let (base, index) = base_and_index(name);
+    let greek = GREEK.iter().find(|(greek, ..)| *greek == base);
+    let is_long = greek.is_none() && base.chars().count() > 1;
+    match notation {
+        Notation::Unicode => {
+            let base = greek.map_or_else(|| base.to_owned(), |(_, letter, _)| letter.to_string());
+            let base = if has_dot { with_dot(&base) } else { base };
+            let is_number = index.chars().all(|c| c.is_ascii_digit());
+            let index = if is_number { index.chars().map(subscript).collect() } else { format!("_{index}") };
+            base + &index
+        }
+        Notation::Latex => {
+            let base = match greek {
+                Some((.., command)) => (*command).to_owned(),
+                None if is_long => format!("\\mathrm{{{}}}", base.replace('_', "\\_")),
+                None => base.to_owned(),
+            };
+            let base = if has_dot { format!("\\dot{{{base}}}") } else { base };
+            match index.chars().count() {
+                0 => base,
+                1 => format!("{base}_{index}"),
+                _ if index.chars().all(|c| c.is_ascii_digit()) => format!("{base}_{{{index}}}"),
+                _ => format!("{base}_{{\\mathrm{{{}}}}}", index.replace('_', "\\_")),
+            }
+        }
+    }
+}
+
+/// `x1` is `x` with the index `1`, `m_rod` is `m` with the index `rod`.
+fn base_and_index(name: &str) -> (&str, &str) {
+    match name.split_once('_') {
+        Some((base, index)) if !base.is_empty() && !index.is_empty() => (base, index),
+        Some(_) => (name, ""),
+        None => {
+            let base = name.trim_end_matches(|c: char| c.is_ascii_digit());
+            if base.is_empty() { (name, "") } else { name.split_at(base.len()) }
+        }
+    }
+}
+
+/// Letters that Unicode has with a dot above, for fonts that do not put one there.
+const DOTTED: [(char, char); 20] = [
+    ('a', 'ȧ'),
+    ('b', 'ḃ'),
+    ('c', 'ċ'),
+    ('d', 'ḋ'),
+    ('e', 'ė'),
+    ('f', 'ḟ'),
+    ('g', 'ġ'),
+    ('h', 'ḣ'),
+    ('m', 'ṁ'),
+    ('n', 'ṅ'),
+    ('o', 'ȯ'),
+    ('p', 'ṗ'),
+    ('r', 'ṙ'),
+    ('s', 'ṡ'),
+    ('t', 'ṫ'),
+    ('w', 'ẇ'),
+    ('x', 'ẋ'),
+    ('y', 'ẏ'),
+    ('z', 'ż'),
+    ('X', 'Ẋ'),
+];
+
+fn with_dot(base: &str) -> String {
+    let mut letters = base.chars();
+    match (letters.next(), letters.next()) {
+        (Some(letter), None) => match DOTTED.iter().find(|(plain, _)| *plain == letter) {
+            Some((_, dotted)) => dotted.to_string(),
+            None => format!("{letter}\u{307}"),
+        },
+        // A dot above a word would belong to one of its letters.
+        _ => format!("{base}˙"),
+    }
+}
+
+fn superscript(digit: char) -> char {
+    match digit {
+        '-' => '⁻',
+        '1' => '¹',
+        '2' => '²',
+        '3' => '³',
+        _ => char::from_u32('⁰' as u32 + digit.to_digit(10).unwrap_or(0)).expect("superscripts are in a row"),
+    }
+}
+
+fn subscript(digit: char) -> char {
+    char::from_u32('₀' as u32 + digit.to_digit(10).unwrap_or(0)).expect("subscripts are in a row")
+}
+
+#[cfg(test)]
+mod tests {
+    use proc_macro2::TokenStream;
+
+    use crate::diagnostics::Diagnostics;
+    use crate::model::written;
+    use crate::syntax;
+
+    /// The potential in both notations, in the coordinates `x`, `theta`, `x1`.
+    fn printed(potential: &str) -> [String; 2] {
+        let input = format!(
+            "#[evi(coordinates(x, theta, x1), kinetic = der(x) + der(theta) + der(x1),
+             potential = {potential})]
+             struct S {{ m: f64, l: f64, k0: f64, omega_max: f64 }}"
+        );
+        let tokens: TokenStream = input.parse().expect("tokens");
+        let mut diagnostics = Diagnostics::default();
+        let Ok(declaration) = syntax::parse(tokens, &mut diagnostics) else {
+            panic!("{potential} is no item");
+        };
+        let equations = written(&declaration);
+        let equation = equations.iter().find(|equation| equation.left.unicode == "V");
+        let formula = &equation.unwrap_or_else(|| panic!("{potential} has mistakes")).right;
+        [formula.unicode.clone(), formula.latex.clone()]
+    }
+
+    #[track_caller]
+    fn check(potential: &str, unicode: &str, latex: &str) {
+        assert_eq!(printed(potential), [unicode, latex], "{potential}");
+    }
+
+    #[test]
+    fn names_have_greek_letters_indices_and_dots() {
+        check("theta + x1 + k0 + m", "θ + x₁ + k₀ + m", "\\theta + x_1 + k_0 + m");
+        check(
+            "omega_max * der(theta) * der(x1)",
+            "ω_max θ̇ ẋ₁",
+            "\\omega_{\\mathrm{max}} \\dot{\\theta} \\dot{x}_1",
+        );
+        check("t * core::f64::consts::PI * BIG", "t π BIG", "t \\pi \\mathrm{BIG}");
+    }
+
+    #[test]
+    fn numbers_are_short() {
+        check("0.5 * x", "½ x", "\\frac{1}{2} x");
+        check("0.1 + 2.0 * x", "0.1 + 2 x", "0.1 + 2 x");
+        check("1.5e-9 * x", "(1.5 · 10⁻⁹) x", "(1.5 \\cdot 10^{-9}) x");
+        check("x * 2.0 * 3.0", "x · 2 · 3", "x \\cdot 2 \\cdot 3");
+    }
+
+    #[test]
+    fn parentheses_stand_where_they_are_needed() {
+        check("(x + m) * l", "(x + m) l", "(x + m) l");
+        check("x + (m + l)", "x + m + l", "x + m + l");
+        check("x - (m + l)", "x − (m + l)", "x - (m + l)");
+        check("x - (m - l)", "x − (m − l)", "x - (m - l)");
+        check("-(m - l) * x", "−(m − l) x", "-(m - l) x");
+        check("x * -m - -l", "−x m + l", "-x m + l");
+        check("(-x).powi(2)", "(−x)²", "(-x)^2");
+        check("(x * m).powi(3) + (x.powi(2)).powi(2)", "(x m)³ + (x²)²", "(x m)^3 + (x^2)^2");
+    }
+
+    #[test]
+    fn fractions_are_flat_in_text_and_built_up_in_latex() {
+        check("m / x", "m/x", "\\frac{m}{x}");
+        check("m / (x * l)", "m/(x l)", "\\frac{m}{x l}");
+        check("m / x / l", "m/(x l)", "\\frac{m}{x l}");
+        check("m / (x / l)", "m l/x", "\\frac{m l}{x}");
+        check("0.5 * m * l / x", "½ m l/x", "\\frac{1}{2} \\frac{m l}{x}");
+        check("1.0 / x.powi(2)", "1/x²", "\\frac{1}{x^2}");
+        check("-(x + m) / (x - m)", "−(x + m)/(x − m)", "-\\frac{x + m}{x - m}");
+        check("(m / x).powi(2)", "(m/x)²", "\\left(\\frac{m}{x}\\right)^2");
+    }
+
+    #[test]
+    fn functions_need_no_parentheses_around_a_name() {
+        check("theta.cos()", "cos θ", "\\cos \\theta");
+        check("theta.cos() * m", "m cos θ", "m \\cos \\theta");
+        check("theta.cos() * x1.sin()", "cos θ sin x₁", "\\cos \\theta \\sin x_1");
+        check("(2.0 * theta).sin() * m", "sin(2 θ) m", "\\sin(2 \\theta) m");
+        check("theta.sin().powi(2)", "sin² θ", "\\sin^2 \\theta");
+        check("theta.tan().powi(-1)", "(tan θ)⁻¹", "(\\tan \\theta)^{-1}");
+        check("x.sqrt() * (x + m).sqrt()", "√x √(x + m)", "\\sqrt{x} \\sqrt{x + m}");
+        check("x.sqrt().powi(2)", "(√x)²", "\\sqrt{x}^2");
+        check("(-m * x).exp()", "exp(−m x)", "e^{-m x}");
+        check("(x - l).abs()", "|x − l|", "\\left|x - l\\right|");
+        check("x.powf(m + 1.0)", "x^(m + 1)", "x^{m + 1}");
+        check("x.atan2(m - l)", "atan2(x, m − l)", "\\operatorname{atan2}(x, m - l)");
+    }
+
+    #[test]
+    fn shared_expressions_go_by_their_name() {
+        check("{ let r = x + m; r * r }", "(x + m) (x + m)", "(x + m) (x + m)");
+    }
+
+    #[test]
+    fn a_long_expression_is_abbreviated() {
+        let terms: Vec<String> = (0..300).map(|k| format!("{k}.5 * x")).collect();
+        let [unicode, _] = printed(&terms.join(" + "));
+        assert!(unicode.starts_with("½ x + 1.5 x + 2.5 x") && unicode.ends_with(" + …"), "{unicode}");
+        // Sums that double twenty times have a million terms, each of which is a name in the graph.
+        let doubled = (0..20).map(|k| format!("let r{} = r{k} + r{k} * x;", k + 1));
+        let [unicode, latex] = printed(&format!("{{ let r0 = x; {} r20 }}", doubled.collect::<String>()));
+        assert!(unicode.chars().count() < 4_000 && latex.len() < 4_000, "{unicode}");
+    }
+}
