@@ -8,7 +8,7 @@ use super::{IterationFailure, StepError};
 use crate::array::Array;
 use crate::linear::{Factorization, largest_magnitude};
 use crate::mechanics::{Directions, FoldedStep, Mechanics, ProjectionError, State};
-use crate::newton::Progress;
+use crate::newton::{NotConverged, Progress};
 use crate::system::MechanicalSystem;
 
 /// A folded step with the impulses that it has needed so far.
@@ -123,7 +123,11 @@ impl<S: MechanicalSystem> Span<'_, S> {
         let mut progress = Progress::default();
         loop {
             // A sum, in which a NaN survives.
-            let length = (0..S::N_CONSTRAINTS).map(|c| residual[c].abs() * self.inverse_scale[c]).sum();
+            let length: f64 = (0..S::N_CONSTRAINTS).map(|c| residual[c].abs() * self.inverse_scale[c]).sum();
+            if !FRESH && progress.is_slow(length) {
+                let failure = NotConverged { corrections: progress.corrections(), last_correction: length };
+                return Err(self.failed(failure.into(), impulse, gram.pivot_ratio()));
+            }
             gram.solve(&mut residual);
             for c in 0..S::N_CONSTRAINTS {
                 impulse[c] += residual[c];

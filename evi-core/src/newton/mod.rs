@@ -10,6 +10,10 @@ const TARGET: f64 = 0.25 * f64::EPSILON;
 const STAGNATION: f64 = 1e-12;
 /// Corrections that shrink by less than this factor have stagnated.
 const STAGNATION_RATIO: f64 = 0.5;
+/// A frozen matrix that is good to a few percent contracts by a few hundredths; beyond this it is a bad guess.
+const SLOWEST_CHORD: f64 = 0.1;
+/// Corrections of a frozen matrix below this length are round-off, whatever their ratio.
+const CHORD_ROUND_OFF: f64 = 8.0 * f64::EPSILON;
 /// Newton from the predictors used here takes 3 to 6 corrections; a solution not found by then is not near.
 const MAX_CORRECTIONS: usize = 30;
 
@@ -70,6 +74,13 @@ impl Progress {
         }
     }
 
+    /// Whether an iteration with a frozen matrix, whose next correction has the relative length `length`, is so slow that a
+    /// fresh matrix pays, and that it could not be told from an iteration that has reached round-off.
+    #[inline(always)]
+    pub(crate) fn is_slow(&self, length: f64) -> bool {
+        self.previous > 0.0 && length > SLOWEST_CHORD * self.previous && length > CHORD_ROUND_OFF
+    }
+
     /// Number of corrections applied.
     pub(crate) const fn corrections(&self) -> usize {
         self.corrections
@@ -110,6 +121,14 @@ mod tests {
     fn slow_linear_convergence_is_not_mistaken_for_convergence() {
         let result = iterate::<NotConverged>(|k| Ok(0.9_f64.powi(k as i32)));
         assert_eq!(result.unwrap_err().corrections, MAX_CORRECTIONS);
+    }
+
+    #[test]
+    fn a_frozen_matrix_that_contracts_slowly_is_told_from_round_off() {
+        let mut progress = Progress::default();
+        assert!(!progress.is_slow(1e-3));
+        assert_eq!(progress.has_converged(1e-3), Ok(false));
+        assert!(progress.is_slow(6e-4) && !progress.is_slow(1e-5) && !progress.is_slow(1e-16));
     }
 
     #[test]
