@@ -3,6 +3,7 @@
 
 pub mod references;
 pub mod scenes;
+pub mod tangent;
 
 /// Least-squares slope of `ln error` against `ln h`: the order that a sequence of runs shows.
 ///

@@ -8,6 +8,7 @@ mod differentiation;
 mod emission;
 mod graph;
 mod mistakes;
+mod printing;
 mod scheduling;
 mod simplification;
 mod snapshots;

@@ -5,20 +5,19 @@
 //! factors move in front, functions without parentheses move to the end of their product. A long expression
 //! is abbreviated by `…`.
 
+mod names;
+
 use std::cell::Cell;
 use std::collections::HashMap;
+
+pub(crate) use names::{Notation, print_name};
+
+use names::{FRACTIONS, function_names, has_name, superscript, symbol};
 
 use super::{Binary, ExprId, Graph, Node, Symbol, Unary};
 
 /// Nodes that are printed of one expression, about ten lines of text: what is beyond them is an ellipsis.
 const LONGEST_EXPRESSION: usize = 400;
-
-/// How formulas are written.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Notation {
-    Unicode,
-    Latex,
-}
 
 /// What symbols and shared expressions are called.
 pub(crate) struct Names<'a> {
@@ -36,11 +35,6 @@ pub(crate) fn print(graph: &Graph, root: ExprId, names: &Names<'_>, notation: No
 /// The text of what a shared expression stands for: its own name is not used.
 pub(crate) fn print_definition(graph: &Graph, root: ExprId, names: &Names<'_>, notation: Notation) -> String {
     Printer::new(graph, root, names, notation, Some(root)).sum(root).text
-}
-
-/// The text of a name: Greek letters, and digits at its end as an index.
-pub(crate) fn print_name(name: &str, notation: Notation) -> String {
-    symbol(name, false, notation)
 }
 
 /// How tightly an expression holds together.
@@ -407,274 +401,4 @@ fn tree_sizes(graph: &Graph, root: ExprId, is_leaf: impl Fn(ExprId) -> bool) -> 
         sizes.insert(id, below.saturating_add(1));
     }
     sizes
-}
-
-/// Numbers that are better known as fractions.
-const FRACTIONS: [(f64, &str, &str); 3] =
-    [(0.5, "½", "\\frac{1}{2}"), (0.25, "¼", "\\frac{1}{4}"), (0.75, "¾", "\\frac{3}{4}")];
-
-/// Whether a function is written by its name, which can carry an exponent.
-fn has_name(operator: Unary) -> bool {
-    !matches!(operator, Unary::Neg | Unary::Sqrt | Unary::Abs | Unary::Exp)
-}
-
-/// Unicode and LaTeX.
-fn function_names(operator: Unary) -> (&'static str, &'static str) {
-    match operator {
-        Unary::Neg => ("−", "-"),
-        Unary::Sqrt => ("√", "\\sqrt"),
-        Unary::Sin => ("sin", "\\sin"),
-        Unary::Cos => ("cos", "\\cos"),
-        Unary::Tan => ("tan", "\\tan"),
-        Unary::Exp => ("exp", "\\exp"),
-        Unary::Ln => ("ln", "\\ln"),
-        Unary::Asin => ("arcsin", "\\arcsin"),
-        Unary::Acos => ("arccos", "\\arccos"),
-        Unary::Atan => ("arctan", "\\arctan"),
-        Unary::Sinh => ("sinh", "\\sinh"),
-        Unary::Cosh => ("cosh", "\\cosh"),
-        Unary::Tanh => ("tanh", "\\tanh"),
-        Unary::Abs => ("abs", "\\operatorname{abs}"),
-        Unary::Signum => ("sgn", "\\operatorname{sgn}"),
-    }
-}
-
-/// Name, character, LaTeX.
-const GREEK: [(&str, char, &str); 34] = [
-    ("alpha", 'α', "\\alpha"),
-    ("beta", 'β', "\\beta"),
-    ("gamma", 'γ', "\\gamma"),
-    ("delta", 'δ', "\\delta"),
-    ("epsilon", 'ε', "\\varepsilon"),
-    ("zeta", 'ζ', "\\zeta"),
-    ("eta", 'η', "\\eta"),
-    ("theta", 'θ', "\\theta"),
-    ("iota", 'ι', "\\iota"),
-    ("kappa", 'κ', "\\kappa"),
-    ("lambda", 'λ', "\\lambda"),
-    ("mu", 'μ', "\\mu"),
-    ("nu", 'ν', "\\nu"),
-    ("xi", 'ξ', "\\xi"),
-    ("pi", 'π', "\\pi"),
-    ("rho", 'ρ', "\\rho"),
-    ("sigma", 'σ', "\\sigma"),
-    ("tau", 'τ', "\\tau"),
-    ("upsilon", 'υ', "\\upsilon"),
-    ("phi", 'φ', "\\varphi"),
-    ("chi", 'χ', "\\chi"),
-    ("psi", 'ψ', "\\psi"),
-    ("omega", 'ω', "\\omega"),
-    ("PI", 'π', "\\pi"),
-    ("Gamma", 'Γ', "\\Gamma"),
-    ("Delta", 'Δ', "\\Delta"),
-    ("Theta", 'Θ', "\\Theta"),
-    ("Lambda", 'Λ', "\\Lambda"),
-    ("Xi", 'Ξ', "\\Xi"),
-    ("Sigma", 'Σ', "\\Sigma"),
-    ("Phi", 'Φ', "\\Phi"),
-    ("Psi", 'Ψ', "\\Psi"),
-    ("Omega", 'Ω', "\\Omega"),
-    ("Pi", 'Π', "\\Pi"),
-];
-
-/// A name, with a dot above it for a velocity.
-fn symbol(name: &str, has_dot: bool, notation: Notation) -> String {
-    // The last segment of a path; a raw identifier without its mark.
-    let name = name.rsplit("::").next().unwrap_or(name).trim();
-    let name = name.strip_prefix("r#").unwrap_or(name);
-    let (base, index) = base_and_index(name);
-    let greek = GREEK.iter().find(|(greek, ..)| *greek == base);
-    let is_long = greek.is_none() && base.chars().count() > 1;
-    match notation {
-        Notation::Unicode => {
-            let base = greek.map_or_else(|| base.to_owned(), |(_, letter, _)| letter.to_string());
-            let base = if has_dot { with_dot(&base) } else { base };
-            let is_number = index.chars().all(|c| c.is_ascii_digit());
-            let index = if is_number { index.chars().map(subscript).collect() } else { format!("_{index}") };
-            base + &index
-        }
-        Notation::Latex => {
-            let base = match greek {
-                Some((.., command)) => (*command).to_owned(),
-                None if is_long => format!("\\mathrm{{{}}}", base.replace('_', "\\_")),
-                None => base.to_owned(),
-            };
-            let base = if has_dot { format!("\\dot{{{base}}}") } else { base };
-            match index.chars().count() {
-                0 => base,
-                1 => format!("{base}_{index}"),
-                _ if index.chars().all(|c| c.is_ascii_digit()) => format!("{base}_{{{index}}}"),
-                _ => format!("{base}_{{\\mathrm{{{}}}}}", index.replace('_', "\\_")),
-            }
-        }
-    }
-}
-
-/// `x1` is `x` with the index `1`, `m_rod` is `m` with the index `rod`.
-fn base_and_index(name: &str) -> (&str, &str) {
-    match name.split_once('_') {
-        Some((base, index)) if !base.is_empty() && !index.is_empty() => (base, index),
-        Some(_) => (name, ""),
-        None => {
-            let base = name.trim_end_matches(|c: char| c.is_ascii_digit());
-            if base.is_empty() { (name, "") } else { name.split_at(base.len()) }
-        }
-    }
-}
-
-/// Letters that Unicode has with a dot above, for fonts that do not put one there.
-const DOTTED: [(char, char); 20] = [
-    ('a', 'ȧ'),
-    ('b', 'ḃ'),
-    ('c', 'ċ'),
-    ('d', 'ḋ'),
-    ('e', 'ė'),
-    ('f', 'ḟ'),
-    ('g', 'ġ'),
-    ('h', 'ḣ'),
-    ('m', 'ṁ'),
-    ('n', 'ṅ'),
-    ('o', 'ȯ'),
-    ('p', 'ṗ'),
-    ('r', 'ṙ'),
-    ('s', 'ṡ'),
-    ('t', 'ṫ'),
-    ('w', 'ẇ'),
-    ('x', 'ẋ'),
-    ('y', 'ẏ'),
-    ('z', 'ż'),
-    ('X', 'Ẋ'),
-];
-
-fn with_dot(base: &str) -> String {
-    let mut letters = base.chars();
-    match (letters.next(), letters.next()) {
-        (Some(letter), None) => match DOTTED.iter().find(|(plain, _)| *plain == letter) {
-            Some((_, dotted)) => dotted.to_string(),
-            None => format!("{letter}\u{307}"),
-        },
-        // A dot above a word would belong to one of its letters.
-        _ => format!("{base}˙"),
-    }
-}
-
-fn superscript(digit: char) -> char {
-    match digit {
-        '-' => '⁻',
-        '1' => '¹',
-        '2' => '²',
-        '3' => '³',
-        _ => char::from_u32('⁰' as u32 + digit.to_digit(10).unwrap_or(0)).expect("superscripts are in a row"),
-    }
-}
-
-fn subscript(digit: char) -> char {
-    char::from_u32('₀' as u32 + digit.to_digit(10).unwrap_or(0)).expect("subscripts are in a row")
-}
-
-#[cfg(test)]
-mod tests {
-    use proc_macro2::TokenStream;
-
-    use crate::diagnostics::Diagnostics;
-    use crate::model::written;
-    use crate::syntax;
-
-    /// The potential in both notations, in the coordinates `x`, `theta`, `x1`.
-    fn printed(potential: &str) -> [String; 2] {
-        let input = format!(
-            "#[evi(coordinates(x, theta, x1), kinetic = der(x) + der(theta) + der(x1),
-             potential = {potential})]
-             struct S {{ m: f64, l: f64, k0: f64, omega_max: f64 }}"
-        );
-        let tokens: TokenStream = input.parse().expect("tokens");
-        let mut diagnostics = Diagnostics::default();
-        let Ok(declaration) = syntax::parse(tokens, &mut diagnostics) else {
-            panic!("{potential} is no item");
-        };
-        let equations = written(&declaration);
-        let equation = equations.iter().find(|equation| equation.left.unicode == "V");
-        let formula = &equation.unwrap_or_else(|| panic!("{potential} has mistakes")).right;
-        [formula.unicode.clone(), formula.latex.clone()]
-    }
-
-    #[track_caller]
-    fn check(potential: &str, unicode: &str, latex: &str) {
-        assert_eq!(printed(potential), [unicode, latex], "{potential}");
-    }
-
-    #[test]
-    fn names_have_greek_letters_indices_and_dots() {
-        check("theta + x1 + k0 + m", "θ + x₁ + k₀ + m", "\\theta + x_1 + k_0 + m");
-        check(
-            "omega_max * der(theta) * der(x1)",
-            "ω_max θ̇ ẋ₁",
-            "\\omega_{\\mathrm{max}} \\dot{\\theta} \\dot{x}_1",
-        );
-        check("t * core::f64::consts::PI * BIG", "t π BIG", "t \\pi \\mathrm{BIG}");
-    }
-
-    #[test]
-    fn numbers_are_short() {
-        check("0.5 * x", "½ x", "\\frac{1}{2} x");
-        check("0.1 + 2.0 * x", "0.1 + 2 x", "0.1 + 2 x");
-        check("1.5e-9 * x", "(1.5 · 10⁻⁹) x", "(1.5 \\cdot 10^{-9}) x");
-        check("x * 2.0 * 3.0", "x · 2 · 3", "x \\cdot 2 \\cdot 3");
-    }
-
-    #[test]
-    fn parentheses_stand_where_they_are_needed() {
-        check("(x + m) * l", "(x + m) l", "(x + m) l");
-        check("x + (m + l)", "x + m + l", "x + m + l");
-        check("x - (m + l)", "x − (m + l)", "x - (m + l)");
-        check("x - (m - l)", "x − (m − l)", "x - (m - l)");
-        check("-(m - l) * x", "−(m − l) x", "-(m - l) x");
-        check("x * -m - -l", "−x m + l", "-x m + l");
-        check("(-x).powi(2)", "(−x)²", "(-x)^2");
-        check("(x * m).powi(3) + (x.powi(2)).powi(2)", "(x m)³ + (x²)²", "(x m)^3 + (x^2)^2");
-    }
-
-    #[test]
-    fn fractions_are_flat_in_text_and_built_up_in_latex() {
-        check("m / x", "m/x", "\\frac{m}{x}");
-        check("m / (x * l)", "m/(x l)", "\\frac{m}{x l}");
-        check("m / x / l", "m/(x l)", "\\frac{m}{x l}");
-        check("m / (x / l)", "m l/x", "\\frac{m l}{x}");
-        check("0.5 * m * l / x", "½ m l/x", "\\frac{1}{2} \\frac{m l}{x}");
-        check("1.0 / x.powi(2)", "1/x²", "\\frac{1}{x^2}");
-        check("-(x + m) / (x - m)", "−(x + m)/(x − m)", "-\\frac{x + m}{x - m}");
-        check("(m / x).powi(2)", "(m/x)²", "\\left(\\frac{m}{x}\\right)^2");
-    }
-
-    #[test]
-    fn functions_need_no_parentheses_around_a_name() {
-        check("theta.cos()", "cos θ", "\\cos \\theta");
-        check("theta.cos() * m", "m cos θ", "m \\cos \\theta");
-        check("theta.cos() * x1.sin()", "cos θ sin x₁", "\\cos \\theta \\sin x_1");
-        check("(2.0 * theta).sin() * m", "sin(2 θ) m", "\\sin(2 \\theta) m");
-        check("theta.sin().powi(2)", "sin² θ", "\\sin^2 \\theta");
-        check("theta.tan().powi(-1)", "(tan θ)⁻¹", "(\\tan \\theta)^{-1}");
-        check("x.sqrt() * (x + m).sqrt()", "√x √(x + m)", "\\sqrt{x} \\sqrt{x + m}");
-        check("x.sqrt().powi(2)", "(√x)²", "\\sqrt{x}^2");
-        check("(-m * x).exp()", "exp(−m x)", "e^{-m x}");
-        check("(x - l).abs()", "|x − l|", "\\left|x - l\\right|");
-        check("x.powf(m + 1.0)", "x^(m + 1)", "x^{m + 1}");
-        check("x.atan2(m - l)", "atan2(x, m − l)", "\\operatorname{atan2}(x, m - l)");
-    }
-
-    #[test]
-    fn shared_expressions_go_by_their_name() {
-        check("{ let r = x + m; r * r }", "(x + m) (x + m)", "(x + m) (x + m)");
-    }
-
-    #[test]
-    fn a_long_expression_is_abbreviated() {
-        let terms: Vec<String> = (0..300).map(|k| format!("{k}.5 * x")).collect();
-        let [unicode, _] = printed(&terms.join(" + "));
-        assert!(unicode.starts_with("½ x + 1.5 x + 2.5 x") && unicode.ends_with(" + …"), "{unicode}");
-        // Sums that double twenty times have a million terms, each of which is a name in the graph.
-        let doubled = (0..20).map(|k| format!("let r{} = r{k} + r{k} * x;", k + 1));
-        let [unicode, latex] = printed(&format!("{{ let r0 = x; {} r20 }}", doubled.collect::<String>()));
-        assert!(unicode.chars().count() < 4_000 && latex.len() < 4_000, "{unicode}");
-    }
 }

@@ -1,0 +1,105 @@
+//! Formulas as text and LaTeX.
+
+use proc_macro2::TokenStream;
+
+use crate::diagnostics::Diagnostics;
+use crate::model::written;
+use crate::syntax;
+
+/// The potential in both notations, in the coordinates `x`, `theta`, `x1`.
+fn printed(potential: &str) -> [String; 2] {
+    let input = format!(
+        "#[evi(coordinates(x, theta, x1), kinetic = der(x) + der(theta) + der(x1),
+         potential = {potential})]
+         struct S {{ m: f64, l: f64, k0: f64, omega_max: f64 }}"
+    );
+    let tokens: TokenStream = input.parse().expect("tokens");
+    let mut diagnostics = Diagnostics::default();
+    let Ok(declaration) = syntax::parse(tokens, &mut diagnostics) else {
+        panic!("{potential} is no item");
+    };
+    let equations = written(&declaration);
+    let equation = equations.iter().find(|equation| equation.left.unicode == "V");
+    let formula = &equation.unwrap_or_else(|| panic!("{potential} has mistakes")).right;
+    [formula.unicode.clone(), formula.latex.clone()]
+}
+
+#[track_caller]
+fn check(potential: &str, unicode: &str, latex: &str) {
+    assert_eq!(printed(potential), [unicode, latex], "{potential}");
+}
+
+#[test]
+fn names_have_greek_letters_indices_and_dots() {
+    check("theta + x1 + k0 + m", "θ + x₁ + k₀ + m", "\\theta + x_1 + k_0 + m");
+    check(
+        "omega_max * der(theta) * der(x1)",
+        "ω_max θ̇ ẋ₁",
+        "\\omega_{\\mathrm{max}} \\dot{\\theta} \\dot{x}_1",
+    );
+    check("t * core::f64::consts::PI * BIG", "t π BIG", "t \\pi \\mathrm{BIG}");
+}
+
+#[test]
+fn numbers_are_short() {
+    check("0.5 * x", "½ x", "\\frac{1}{2} x");
+    check("0.1 + 2.0 * x", "0.1 + 2 x", "0.1 + 2 x");
+    check("1.5e-9 * x", "(1.5 · 10⁻⁹) x", "(1.5 \\cdot 10^{-9}) x");
+    check("x * 2.0 * 3.0", "x · 2 · 3", "x \\cdot 2 \\cdot 3");
+}
+
+#[test]
+fn parentheses_stand_where_they_are_needed() {
+    check("(x + m) * l", "(x + m) l", "(x + m) l");
+    check("x + (m + l)", "x + m + l", "x + m + l");
+    check("x - (m + l)", "x − (m + l)", "x - (m + l)");
+    check("x - (m - l)", "x − (m − l)", "x - (m - l)");
+    check("-(m - l) * x", "−(m − l) x", "-(m - l) x");
+    check("x * -m - -l", "−x m + l", "-x m + l");
+    check("(-x).powi(2)", "(−x)²", "(-x)^2");
+    check("(x * m).powi(3) + (x.powi(2)).powi(2)", "(x m)³ + (x²)²", "(x m)^3 + (x^2)^2");
+}
+
+#[test]
+fn fractions_are_flat_in_text_and_built_up_in_latex() {
+    check("m / x", "m/x", "\\frac{m}{x}");
+    check("m / (x * l)", "m/(x l)", "\\frac{m}{x l}");
+    check("m / x / l", "m/(x l)", "\\frac{m}{x l}");
+    check("m / (x / l)", "m l/x", "\\frac{m l}{x}");
+    check("0.5 * m * l / x", "½ m l/x", "\\frac{1}{2} \\frac{m l}{x}");
+    check("1.0 / x.powi(2)", "1/x²", "\\frac{1}{x^2}");
+    check("-(x + m) / (x - m)", "−(x + m)/(x − m)", "-\\frac{x + m}{x - m}");
+    check("(m / x).powi(2)", "(m/x)²", "\\left(\\frac{m}{x}\\right)^2");
+}
+
+#[test]
+fn functions_need_no_parentheses_around_a_name() {
+    check("theta.cos()", "cos θ", "\\cos \\theta");
+    check("theta.cos() * m", "m cos θ", "m \\cos \\theta");
+    check("theta.cos() * x1.sin()", "cos θ sin x₁", "\\cos \\theta \\sin x_1");
+    check("(2.0 * theta).sin() * m", "sin(2 θ) m", "\\sin(2 \\theta) m");
+    check("theta.sin().powi(2)", "sin² θ", "\\sin^2 \\theta");
+    check("theta.tan().powi(-1)", "(tan θ)⁻¹", "(\\tan \\theta)^{-1}");
+    check("x.sqrt() * (x + m).sqrt()", "√x √(x + m)", "\\sqrt{x} \\sqrt{x + m}");
+    check("x.sqrt().powi(2)", "(√x)²", "\\sqrt{x}^2");
+    check("(-m * x).exp()", "exp(−m x)", "e^{-m x}");
+    check("(x - l).abs()", "|x − l|", "\\left|x - l\\right|");
+    check("x.powf(m + 1.0)", "x^(m + 1)", "x^{m + 1}");
+    check("x.atan2(m - l)", "atan2(x, m − l)", "\\operatorname{atan2}(x, m - l)");
+}
+
+#[test]
+fn shared_expressions_go_by_their_name() {
+    check("{ let r = x + m; r * r }", "(x + m) (x + m)", "(x + m) (x + m)");
+}
+
+#[test]
+fn a_long_expression_is_abbreviated() {
+    let terms: Vec<String> = (0..300).map(|k| format!("{k}.5 * x")).collect();
+    let [unicode, _] = printed(&terms.join(" + "));
+    assert!(unicode.starts_with("½ x + 1.5 x + 2.5 x") && unicode.ends_with(" + …"), "{unicode}");
+    // Sums that double twenty times have a million terms, each of which is a name in the graph.
+    let doubled = (0..20).map(|k| format!("let r{} = r{k} + r{k} * x;", k + 1));
+    let [unicode, latex] = printed(&format!("{{ let r0 = x; {} r20 }}", doubled.collect::<String>()));
+    assert!(unicode.chars().count() < 4_000 && latex.len() < 4_000, "{unicode}");
+}
