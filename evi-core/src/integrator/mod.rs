@@ -73,7 +73,7 @@ pub enum StepError {
         last_correction: f64,
         /// Largest constraint residual at the last iterate.
         constraint_residual: f64,
-        /// Smallest ratio of pivots met on the way.
+        /// Smallest ratio of pivots met on the way; of the last matrix where only multipliers are iterated.
         smallest_pivot_ratio: f64,
     },
     /// The matrix of the step equations is singular: the constraints are dependent at this configuration, or the
