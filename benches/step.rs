@@ -8,9 +8,6 @@ use evi_core::generic::{GenericEvi, GenericSystem};
 use evi_core::prelude::*;
 use evi_examples::{DoublePendulum, SphericalPendulum, Start, StiffSpringPendulum};
 
-#[path = "hand_written/double_pendulum.rs"]
-mod hand_written;
-
 const H: f64 = 0.01;
 
 fn steps(criterion: &mut Criterion) {
@@ -28,8 +25,6 @@ fn steps(criterion: &mut Criterion) {
     measure_generic(&mut group, "generic_simpson", pendulum, &GenericEvi::simpson(H), start);
     measure(&mut group, "rattle", Simulation::new(pendulum, Rattle::new(H)), start);
     measure(&mut group, "rk4", Simulation::new(pendulum, Rk4::new(H)), start);
-    let mut run = hand_written::HandWritten::new(&pendulum, start, H);
-    group.bench_function("hand_written_midpoint", |bencher| bencher.iter(|| run.advance()));
     group.finish();
 
     let pendulum = SphericalPendulum::UNIT;

@@ -37,6 +37,11 @@ impl HandWritten {
         }
     }
 
+    /// Positions.
+    pub(crate) fn q(&self) -> &[f64; 4] {
+        &self.q
+    }
+
     /// One step; `false` if the multipliers did not converge.
     #[inline]
     pub(crate) fn advance(&mut self) -> bool {

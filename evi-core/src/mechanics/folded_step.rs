@@ -136,6 +136,9 @@ impl<S: MechanicalSystem> FoldedStep<S> {
     /// The velocity of the momentum `p`.
     #[inline]
     pub(crate) fn velocity(&self, p: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
+        if S::STRUCTURE.momentum_vanishes_at_rest {
+            return self.inverse_mass(p);
+        }
         times::<S>(&self.inverse_mass, |i| p[i] - self.momentum_at_rest[i])
     }
 }
