@@ -227,3 +227,43 @@ fn constraints_hold_where_the_frozen_matrix_is_a_bad_guess() {
         assert!(residual.iter().all(|residual| residual.abs() <= 8.0 * f64::EPSILON), "{residual:?}");
     }
 }
+
+/// A crank and a connecting rod whose end slides on the x axis: its coordinate y2 is zero, and so is its constraint's scale.
+#[derive(MechanicalSystem, Clone, Copy)]
+#[evi(
+    coordinates(x1, y1, x2, y2),
+    kinetic = 0.5 * m1 * (der(x1).powi(2) + der(y1).powi(2)) + 0.5 * m2 * (der(x2).powi(2) + der(y2).powi(2)),
+    potential = 9.81 * (m1 * y1 + m2 * y2),
+    constraint(crank: x1.powi(2) + y1.powi(2) == 0.09),
+    constraint(rod: (x2 - x1).powi(2) + (y2 - y1).powi(2) == 1.0),
+    constraint(slider: y2 == 0.0),
+)]
+struct SliderCrank {
+    m1: f64,
+    m2: f64,
+}
+
+#[test]
+fn one_constraint_that_converges_at_once_does_not_hide_the_others() {
+    let simulation = Simulation::new(SliderCrank { m1: 1.0, m2: 2.0 }, Evi::midpoint(0.01));
+    // The crank turns with 8 rad/s.
+    let mut run = simulation.start([0.3, 0.0, 1.3, 0.0], [0.0, 2.4, 0.0, 0.0]).expect("consistent");
+    for step in 0..20_000 {
+        run.advance().expect("solvable");
+        let residual = run.mechanics().constraint_residual(run.state());
+        // Round-off of squares of coordinates up to 1.3.
+        assert!(residual.iter().all(|residual| residual.abs() <= 8.0 * f64::EPSILON), "{step}: {residual:?}");
+        if step % 100 == 0 {
+            let state = run.state();
+            simulation.start_at(state.t(), *state.q(), *state.v()).expect("a state is a consistent start");
+        }
+    }
+}
+
+#[test]
+fn a_velocity_that_is_round_off_is_a_consistent_start() {
+    let simulation = Simulation::new(SliderCrank { m1: 1.0, m2: 2.0 }, Evi::midpoint(0.01));
+    assert!(simulation.start([0.3, 0.0, 1.3, 1e-17], [0.0, 0.0, 0.0, -4e-34]).is_ok());
+    assert!(simulation.start([0.3, 0.0, 1.3, 1e-14], [0.0; 4]).is_err());
+    assert!(simulation.start([0.3, 0.0, 1.3, 0.0], [0.0, 0.0, 0.0, 1e-9]).is_err());
+}

@@ -269,7 +269,7 @@ fn report_of_the_double_pendulum() {
 
         Left out
           mass matrix: constant, folded once per run
-          velocity from momentum: one linear solve, no iteration
+          iteration for the velocity: it is linear in the momentum
           potential Hessian: zero, the force is uniform
           coupling of positions and velocities: zero
           time derivatives: time appears nowhere
@@ -309,7 +309,7 @@ fn report_of_the_pendulum_in_an_angle() {
 
         Left out
           mass matrix: constant, folded once per run
-          velocity from momentum: one linear solve, no iteration
+          iteration for the velocity: it is linear in the momentum
           coupling of positions and velocities: zero
           time derivatives: time appears nowhere
           multipliers: the scene has no constraints
@@ -356,7 +356,7 @@ fn report_of_the_spherical_pendulum() {
 
         Left out
           mass matrix: constant, folded once per run
-          velocity from momentum: one linear solve, no iteration
+          iteration for the velocity: it is linear in the momentum
           potential Hessian: zero, the force is uniform
           coupling of positions and velocities: zero
           time derivatives: time appears nowhere
@@ -398,7 +398,7 @@ fn report_of_the_stiff_spring_pendulum() {
 
         Left out
           mass matrix: constant, folded once per run
-          velocity from momentum: one linear solve, no iteration
+          iteration for the velocity: it is linear in the momentum
           coupling of positions and velocities: zero
           time derivatives: time appears nowhere
           multipliers: the scene has no constraints
@@ -438,7 +438,7 @@ fn report_of_the_oscillator() {
 
         Left out
           mass matrix: constant, folded once per run
-          velocity from momentum: one linear solve, no iteration
+          iteration for the velocity: it is linear in the momentum
           potential Hessian: constant, folded once per run
           coupling of positions and velocities: zero
           time derivatives: time appears nowhere
@@ -497,7 +497,7 @@ fn report_of_many_kinds_of_constraints() {
 
         Left out
           mass matrix: constant, folded once per run
-          velocity from momentum: one linear solve, no iteration
+          iteration for the velocity: it is linear in the momentum
           coupling of positions and velocities: zero
 
         Warnings

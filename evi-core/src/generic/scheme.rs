@@ -14,7 +14,7 @@ use crate::scheme::{
 /// The exponential variational integrator for a [`GenericSystem`]: the scheme of [`Evi`](crate::integrator::Evi),
 /// on matrices of a size known at run time, with derivatives by dual numbers.
 ///
-/// Symplectic, momentum preserving, and of order 2 for symmetric nodes as `Evi` is; linear interpolation by default.
+/// Symplectic and of order 2 for symmetric nodes as `Evi` is; linear interpolation by default.
 ///
 /// ```
 /// use evi_core::generic::{GenericEvi, GenericSystem};

@@ -13,8 +13,14 @@ use crate::system::MechanicalSystem;
 ///
 /// The action of a step is a weighted sum of the Lagrangian over `K` nodes of a curve that is linear
 /// ([`Linear`]) or trigonometric or hyperbolic ([`Frequency`], one for all coordinates or an array with one per
-/// coordinate). Symplectic on the constraint manifold, momentum preserving, of order 2 for symmetric nodes whatever
-/// `K` is (Marsden & West, Acta Numerica 10 (2001), thm. 2.3.1), and time-symmetric then.
+/// coordinate). Symplectic on the constraint manifold, of order 2 for symmetric nodes whatever `K` is (Marsden & West, Acta
+/// Numerica 10 (2001), thm. 2.3.1), and time-symmetric then.
+///
+/// On straight curves every linear and angular momentum of the scene is preserved. A frequency keeps only symmetries that act
+/// linearly, such as rotations about the origin: a constant is not in the span of `cos ωt, sin ωt`, so that with `K ≥ 2`
+/// nodes motions depend on where the origin is. Give a frequency to coordinates that oscillate about 0 with about that frequency,
+/// and [`Frequency::ZERO`] to those that translate, rotate, or are soft: with `K ≥ 2` a free coordinate grows at the rate
+/// `ω² h √(Σ wⱼ σⱼ²)`.
 ///
 /// ```
 /// use evi_core::prelude::*;
@@ -50,12 +56,13 @@ impl<const K: usize> Evi<K> {
         Self { quadrature, h, interpolant: Linear }
     }
 
-    /// Interpolates every coordinate with the same frequency.
+    /// Interpolates every coordinate with the same frequency; for scenes in which all coordinates oscillate about 0.
     pub fn frequency(self, frequency: impl Into<Frequency>) -> Evi<K, Frequency> {
         Evi { quadrature: self.quadrature, h: self.h, interpolant: frequency.into() }
     }
 
-    /// Interpolates coordinate `i` with `frequencies[i]`. Coordinates of one body should share theirs.
+    /// Interpolates coordinate `i` with `frequencies[i]`, [`Frequency::ZERO`] on a straight line. Coordinates of one body should
+    /// share theirs.
     pub fn frequencies<const N: usize>(self, frequencies: [Frequency; N]) -> Evi<K, [Frequency; N]> {
         Evi { quadrature: self.quadrature, h: self.h, interpolant: frequencies }
     }

@@ -8,7 +8,7 @@ use super::{IterationFailure, StepError};
 use crate::array::Array;
 use crate::linear::{Factorization, largest_magnitude};
 use crate::mechanics::{Directions, FoldedStep, Mechanics, ProjectionError, State};
-use crate::newton::{NotConverged, Progress};
+use crate::newton::{self, NotConverged, Progress};
 use crate::system::MechanicalSystem;
 
 /// A folded step with the impulses that it has needed so far.
@@ -28,7 +28,7 @@ struct Span<'a, S: MechanicalSystem> {
     free_end: S::PerCoordinate<f64>,
     /// `h A⁻¹ G₀ᵀ`.
     directions: Directions<S>,
-    /// What `φ` is compared with: `1 / Σ |G_ci| (|qᵢ| + |dᵢ|)`.
+    /// `1 / Σ |G_ci| rᵢ`, where `rᵢ` adds up the magnitudes of the terms that `q₁` is a sum of: what `φ` is compared with.
     inverse_scale: S::PerConstraint<f64>,
 }
 
@@ -52,15 +52,19 @@ impl<S: MechanicalSystem> MultiplierStep<S> {
         let mut q = Array::from_fn(|i| state.q[i] + free_difference[i]);
         if S::N_CONSTRAINTS > 0 {
             let (_, jacobian) = S::constraint_derivatives(&mechanics.constants, state.t, &state.q);
+            let directions = mechanics.constraint_directions(&jacobian, |x| self.folded.drift(x));
+            let guess = self.extrapolated_impulse();
+            let mut reach = S::PerCoordinate::<f64>::from_fn(|i| state.q[i].abs() + free_difference[i].abs());
+            add_magnitudes::<S>(&directions, &guess, &mut reach);
             let span = Span {
-                directions: mechanics.constraint_directions(&jacobian, |x| self.folded.drift(x)),
-                inverse_scale: mechanics.inverse_constraint_scale(&jacobian, &state.q, &free_difference),
+                inverse_scale: mechanics.inverse_constraint_scale(&jacobian, &reach),
+                directions,
                 mechanics,
                 start_time: state.t,
                 end_time: t,
                 free_end: q,
             };
-            let impulse = self.solve(&span)?;
+            let impulse = self.solve(&span, guess)?;
             q = span.end(&impulse);
             mechanics.subtract_constraint_force(jacobian.as_ref(), impulse.as_ref(), p.as_mut());
         }
@@ -72,14 +76,24 @@ impl<S: MechanicalSystem> MultiplierStep<S> {
         state.replace(t, q, v, p)
     }
 
-    /// The impulse that ends the step on the constraints.
-    #[inline(always)]
-    fn solve(&mut self, span: &Span<'_, S>) -> Result<S::PerConstraint<f64>, StepError> {
+    /// The impulse that a quadratic through the last three predicts.
+    #[inline]
+    fn extrapolated_impulse(&self) -> S::PerConstraint<f64> {
         let [newest, older, oldest] = &self.previous;
-        let mut impulse = Array::from_fn(|c| 3.0 * (newest[c] - older[c]) + oldest[c]);
+        Array::from_fn(|c| 3.0 * (newest[c] - older[c]) + oldest[c])
+    }
+
+    /// The impulse that ends the step on the constraints, from a first guess.
+    #[inline(always)]
+    fn solve(
+        &mut self,
+        span: &Span<'_, S>,
+        mut impulse: S::PerConstraint<f64>,
+    ) -> Result<S::PerConstraint<f64>, StepError> {
         if span.solve::<false>(&mut impulse).is_err() {
             span.solve_anew(&mut impulse)?;
         }
+        let [newest, older, _] = &self.previous;
         self.previous = [impulse.clone(), newest.clone(), older.clone()];
         Ok(impulse)
     }
@@ -121,9 +135,18 @@ impl<S: MechanicalSystem> Span<'_, S> {
     fn solve<const FRESH: bool>(&self, impulse: &mut S::PerConstraint<f64>) -> Result<(), StepError> {
         let (mut residual, mut gram) = self.linearize(1, impulse)?;
         let mut progress = Progress::default();
+        let mut previous = S::PerConstraint::<f64>::from_fn(|_| 0.0);
         loop {
-            // A sum, in which a NaN survives.
-            let length: f64 = (0..S::N_CONSTRAINTS).map(|c| residual[c].abs() * self.inverse_scale[c]).sum();
+            // Constraint by constraint: the fast convergence of one must not pass for that of all.
+            let mut length = 0.0;
+            let mut is_round_off = true;
+            for c in 0..S::N_CONSTRAINTS {
+                let relative = residual[c].abs() * self.inverse_scale[c];
+                is_round_off &= newton::predicts_round_off(relative, previous[c]);
+                previous[c] = relative;
+                // A sum, in which a NaN survives.
+                length += relative;
+            }
             if !FRESH && progress.is_slow(length) {
                 let failure = NotConverged { corrections: progress.corrections(), last_correction: length };
                 return Err(self.failed(failure.into(), impulse, gram.pivot_ratio()));
@@ -132,7 +155,7 @@ impl<S: MechanicalSystem> Span<'_, S> {
             for c in 0..S::N_CONSTRAINTS {
                 impulse[c] += residual[c];
             }
-            match progress.has_converged(length) {
+            match progress.record(length, is_round_off) {
                 Ok(true) => return Ok(()),
                 Ok(false) => {}
                 Err(failure) => return Err(self.failed(failure.into(), impulse, gram.pivot_ratio())),
@@ -203,6 +226,26 @@ fn subtract<S: MechanicalSystem>(
         for c in 0..S::N_CONSTRAINTS {
             for i in 0..S::N_COORDINATES {
                 x[i] -= directions[c][i] * y[c];
+            }
+        }
+    }
+}
+
+/// Adds `Σ |directions[c] y[c]|` to `x`.
+#[inline]
+fn add_magnitudes<S: MechanicalSystem>(
+    directions: &Directions<S>,
+    y: &S::PerConstraint<f64>,
+    x: &mut S::PerCoordinate<f64>,
+) {
+    if S::STRUCTURE.is_uncoupled() {
+        for entry in S::STRUCTURE.jacobian.q {
+            x[entry.col] += (directions[entry.row][entry.col] * y[entry.row]).abs();
+        }
+    } else {
+        for c in 0..S::N_CONSTRAINTS {
+            for i in 0..S::N_COORDINATES {
+                x[i] += (directions[c][i] * y[c]).abs();
             }
         }
     }

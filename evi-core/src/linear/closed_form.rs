@@ -60,7 +60,10 @@ impl Factorization<[f64; 2], [[f64; 2]; 2]> for Inverse2 {
             let pivot_ratio = determinant.abs() / magnitude;
             Ok(Self { inverse: [[d * r, -b * r], [-c * r, a * r]], pivot_ratio })
         } else {
-            Err(SingularMatrix { pivot_ratio: determinant.abs() / magnitude })
+            // 0 for the zero matrix, NaN where an entry is.
+            Err(SingularMatrix {
+                pivot_ratio: if magnitude == 0.0 { 0.0 } else { determinant.abs() / magnitude },
+            })
         }
     }
 

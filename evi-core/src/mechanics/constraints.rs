@@ -3,6 +3,7 @@
 use super::Mechanics;
 use crate::array::Array;
 use crate::linear::{Factorization, SingularMatrix};
+use crate::scalar::Scalar;
 use crate::system::MechanicalSystem;
 
 /// `B Gᵀ` for a symmetric matrix `B` over the coordinates, a row per constraint.
@@ -65,20 +66,29 @@ impl<S: MechanicalSystem> Mechanics<S> {
         S::GramFactors::factor(&gram)
     }
 
-    /// `1 / Σᵢ |G_ci| (|qᵢ| + |dᵢ|)`: round-off of `φ_c` at `q + d`, in units of round-off. Zero where nothing moves.
+    /// `1 / Σᵢ |G_ci| rᵢ` for a reach `rᵢ ≥ 0` of every coordinate; 0 for a constraint within reach of none.
     #[inline]
     pub(crate) fn inverse_constraint_scale(
         &self,
         jacobian: &S::PerJacobianEntry<f64>,
-        q: &S::PerCoordinate<f64>,
-        difference: &S::PerCoordinate<f64>,
+        reach: &S::PerCoordinate<f64>,
     ) -> S::PerConstraint<f64> {
         let mut scale = S::PerConstraint::<f64>::from_fn(|_| 0.0);
         for entry in S::STRUCTURE.jacobian.q {
             let slope = entry.value(self.constants.as_ref(), jacobian.as_ref());
-            scale[entry.row] += slope.abs() * (q[entry.col].abs() + difference[entry.col].abs());
+            scale[entry.row] += slope.abs() * reach[entry.col];
         }
         Array::from_fn(|c| if scale[c] > 0.0 { 1.0 / scale[c] } else { 0.0 })
+    }
+
+    /// `‖G_c‖`, the Euclidean norm of every constraint's gradient.
+    pub(crate) fn gradient_norms(&self, jacobian: &S::PerJacobianEntry<f64>) -> S::PerConstraint<f64> {
+        let mut squares = S::PerConstraint::<f64>::from_fn(|_| 0.0);
+        for entry in S::STRUCTURE.jacobian.q {
+            let slope = entry.value(self.constants.as_ref(), jacobian.as_ref());
+            squares[entry.row] += slope * slope;
+        }
+        Array::from_fn(|c| Scalar::sqrt(squares[c]))
     }
 
     /// `G v + ∂φ/∂t`: the rate at which a motion leaves the constraints.

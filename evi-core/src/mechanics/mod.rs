@@ -15,6 +15,7 @@ pub(crate) use constraints::Directions;
 pub(crate) use folded_step::FoldedStep;
 pub use momentum::{Acceleration, ProjectionError};
 pub(crate) use momentum::{Projected, relative};
+pub(crate) use observables::norm;
 pub use state::State;
 pub(crate) use step_equations::{DiscreteLagrangian, Slot, StepStart};
 

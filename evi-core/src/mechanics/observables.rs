@@ -39,6 +39,7 @@ impl<S: MechanicalSystem> Mechanics<S> {
     }
 
     /// Residuals of the hidden constraints, `|G v + ∂φ/∂t|ᵢ / (‖Gᵢ‖ ‖v‖ + |∂φᵢ/∂t|)`, without unit; 0 at rest.
+    /// For a velocity that is itself round-off the quotient says nothing.
     pub fn hidden_constraint_residual(&self, state: &State<S>) -> S::PerConstraint<f64> {
         self.hidden_constraint_residual_at(state.t(), state.q(), state.v())
     }
@@ -53,12 +54,8 @@ impl<S: MechanicalSystem> Mechanics<S> {
         let (_, jacobian) = S::constraint_derivatives(&self.constants, t, q);
         let rate = self.constraint_rate(jacobian.as_ref(), v);
         let speed = norm(v.as_ref());
-        let mut gradient_norms = S::PerConstraint::<f64>::from_fn(|_| 0.0);
-        for entry in S::STRUCTURE.jacobian.q {
-            let slope = entry.value(self.constants.as_ref(), jacobian.as_ref());
-            gradient_norms[entry.row] += slope * slope;
-        }
-        let mut scale = S::PerConstraint::<f64>::from_fn(|i| Scalar::sqrt(gradient_norms[i]) * speed);
+        let gradient_norms = self.gradient_norms(&jacobian);
+        let mut scale = S::PerConstraint::<f64>::from_fn(|i| gradient_norms[i] * speed);
         for entry in S::STRUCTURE.jacobian.t {
             scale[entry.row] += entry.value(self.constants.as_ref(), jacobian.as_ref()).abs();
         }
@@ -67,6 +64,6 @@ impl<S: MechanicalSystem> Mechanics<S> {
 }
 
 /// Euclidean norm.
-fn norm(x: &[f64]) -> f64 {
+pub(crate) fn norm(x: &[f64]) -> f64 {
     Scalar::sqrt(x.iter().map(|x| x * x).sum::<f64>())
 }

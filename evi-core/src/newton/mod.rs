@@ -42,18 +42,25 @@ pub(crate) struct Progress {
 }
 
 impl Progress {
-    /// Whether the iteration has converged with a correction of relative length `rₖ`, which has been applied:
-    /// `rₖ · min(1, rₖ / rₖ₋₁)` is below round-off. The product predicts the next correction of a linearly convergent iteration, and
-    /// overestimates it for a quadratically convergent one.
+    /// Whether the iteration has converged with a correction of relative length `length`, which has been applied.
     ///
     /// # Errors
     /// [`NotConverged`] when the iteration has left the numbers or takes too long.
     #[inline(always)]
     pub(crate) fn has_converged(&mut self, length: f64) -> Result<bool, NotConverged> {
+        let is_round_off = predicts_round_off(length, self.previous);
+        self.record(length, is_round_off)
+    }
+
+    /// The same for an iteration that judges its parts, each by [`predicts_round_off`].
+    ///
+    /// # Errors
+    /// As for [`has_converged`](Self::has_converged).
+    #[inline(always)]
+    pub(crate) fn record(&mut self, length: f64, is_round_off: bool) -> Result<bool, NotConverged> {
         self.corrections += 1;
         let previous = core::mem::replace(&mut self.previous, length);
-        // The product above, without a division.
-        if length <= TARGET || (length < previous && length * length <= TARGET * previous) {
+        if is_round_off {
             return Ok(true);
         }
         if length <= STAGNATION_RATIO * previous && self.corrections < MAX_CORRECTIONS {
@@ -85,6 +92,15 @@ impl Progress {
     pub(crate) const fn corrections(&self) -> usize {
         self.corrections
     }
+}
+
+/// Whether corrections of relative lengths `rₖ₋₁`, `rₖ` leave no further one: `rₖ · min(1, rₖ / rₖ₋₁)` is below round-off.
+/// The product predicts the next correction of a linearly convergent iteration, and overestimates it for a quadratically
+/// convergent one. `previous` is 0 before the first correction.
+#[inline(always)]
+pub(crate) fn predicts_round_off(length: f64, previous: f64) -> bool {
+    // The product without a division.
+    length <= TARGET || (length < previous && length * length <= TARGET * previous)
 }
 
 /// Applies corrections until they have converged; returns their number.

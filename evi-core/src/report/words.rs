@@ -21,7 +21,10 @@ impl SystemReport {
         let has_constant_jacobian = structure.each_constraint.iter().all(|row| row.gradient.is_constant());
         [
             (blocks.vv == Block::Constant, "mass matrix: constant, folded once per run"),
-            (structure.is_quadratic_in_velocity(), "velocity from momentum: one linear solve, no iteration"),
+            (
+                structure.is_quadratic_in_velocity(),
+                "iteration for the velocity: it is linear in the momentum",
+            ),
             (is_potential(Potential::Zero), "potential: zero, no force to evaluate"),
             (is_potential(Potential::Affine), "potential Hessian: zero, the force is uniform"),
             (blocks.qq == Block::Constant, "potential Hessian: constant, folded once per run"),

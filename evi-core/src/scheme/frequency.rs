@@ -2,6 +2,9 @@
 
 /// Frequency of the two functions that a coordinate is interpolated with; constant over a run.
 ///
+/// It should be that of an oscillation about 0, with `ω h` well below π/2: what does not oscillate so is better interpolated
+/// on a straight line ([`ZERO`](Frequency::ZERO)), and is unstable with a large frequency and several nodes.
+///
 /// A frequency that follows the state would make the step non-symplectic, hence there is no such variant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Frequency {

@@ -37,7 +37,7 @@ pub enum SchemeError {
     /// `ω h` is so close to a multiple of π that the interpolant through two points is not unique.
     #[error(
         "resonant frequency of coordinate {coordinate}: sin(ω h) = {sine:e} at ω h = {phase}; \
-         below 1e-3 the interpolant is not determined. Choose ω h < π/2"
+         below 1e-3 the interpolant is not determined. Choose ω h well below π/2"
     )]
     ResonantFrequency {
         /// Index of the coordinate.
