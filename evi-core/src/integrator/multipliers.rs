@@ -1,7 +1,7 @@
 //! The step of a folded scene: Newton's iteration on the multipliers alone.
 //!
-//! In: a [`FoldedStep`], whose end point is affine in the impulse `L = Λ/h` of the constraint force. Out: the `L` for which
-//! `φ(q₁(L)) = 0`, and the state there. The matrix `h G₁ A⁻¹ G₀ᵀ` is evaluated and factored once per step, at an impulse that
+//! In: a [`FoldedStep`], whose end point is affine in the impulse `ℓ = Λ/h` of the constraint force. Out: the `ℓ` for which
+//! `φ(q₁(ℓ)) = 0`, and the state there. The matrix `h G₁ A⁻¹ G₀ᵀ` is evaluated and factored once per step, at an impulse that
 //! is extrapolated from the previous steps; each further correction costs one evaluation of the constraints.
 
 use super::{IterationFailure, StepError};
@@ -50,12 +50,13 @@ impl<S: MechanicalSystem> MultiplierStep<S> {
         let mut p = self.folded.kicked_at_start(is_straight, &state.q, &state.p);
         let free_difference = self.folded.drift(&p);
         let mut q = Array::from_fn(|i| state.q[i] + free_difference[i]);
+        let mut impulse = S::PerConstraint::<f64>::from_fn(|_| 0.0);
         if S::N_CONSTRAINTS > 0 {
             let (_, jacobian) = S::constraint_derivatives(&mechanics.constants, state.t, &state.q);
             let directions = mechanics.constraint_directions(&jacobian, |x| self.folded.drift(x));
-            let guess = self.extrapolated_impulse();
+            impulse = self.extrapolated_impulse();
             let mut reach = S::PerCoordinate::<f64>::from_fn(|i| state.q[i].abs() + free_difference[i].abs());
-            add_magnitudes::<S>(&directions, &guess, &mut reach);
+            add_magnitudes::<S>(&directions, &impulse, &mut reach);
             let span = Span {
                 inverse_scale: mechanics.inverse_constraint_scale(&jacobian, &reach),
                 directions,
@@ -64,7 +65,9 @@ impl<S: MechanicalSystem> MultiplierStep<S> {
                 end_time: t,
                 free_end: q,
             };
-            let impulse = self.solve(&span, guess)?;
+            if span.solve::<false>(&mut impulse).is_err() {
+                span.solve_anew(&mut impulse)?;
+            }
             q = span.end(&impulse);
             mechanics.subtract_constraint_force(jacobian.as_ref(), impulse.as_ref(), p.as_mut());
         }
@@ -73,7 +76,9 @@ impl<S: MechanicalSystem> MultiplierStep<S> {
         if S::N_CONSTRAINTS > 0 {
             self.project(mechanics, t, &q, &mut v, &mut p)?;
         }
-        state.replace(t, q, v, p)
+        state.replace(t, q, v, p)?;
+        self.remember(impulse);
+        Ok(())
     }
 
     /// The impulse that a quadratic through the last three predicts.
@@ -83,19 +88,11 @@ impl<S: MechanicalSystem> MultiplierStep<S> {
         Array::from_fn(|c| 3.0 * (newest[c] - older[c]) + oldest[c])
     }
 
-    /// The impulse that ends the step on the constraints, from a first guess.
-    #[inline(always)]
-    fn solve(
-        &mut self,
-        span: &Span<'_, S>,
-        mut impulse: S::PerConstraint<f64>,
-    ) -> Result<S::PerConstraint<f64>, StepError> {
-        if span.solve::<false>(&mut impulse).is_err() {
-            span.solve_anew(&mut impulse)?;
-        }
+    /// Adds the impulse of a step that was taken.
+    #[inline]
+    fn remember(&mut self, impulse: S::PerConstraint<f64>) {
         let [newest, older, _] = &self.previous;
-        self.previous = [impulse.clone(), newest.clone(), older.clone()];
-        Ok(impulse)
+        self.previous = [impulse, newest.clone(), older.clone()];
     }
 
     /// Removes the impulse `Gᵀ N` that leaves the constraints: `G M⁻¹ Gᵀ N = G v + ∂φ/∂t`.
@@ -168,7 +165,7 @@ impl<S: MechanicalSystem> Span<'_, S> {
         }
     }
 
-    /// `φ(q₁(L))`, and the factors of its derivative, `−h G₁ A⁻¹ G₀ᵀ`, but for the sign.
+    /// `φ(q₁(ℓ))`, and the factors of its derivative, `−h G₁ A⁻¹ G₀ᵀ`, but for the sign.
     #[inline]
     fn linearize(
         &self,
@@ -202,7 +199,7 @@ impl<S: MechanicalSystem> Span<'_, S> {
         self.solve::<true>(impulse)
     }
 
-    /// `q₁(L) = q₀ + d_free − h A⁻¹ G₀ᵀ L`.
+    /// `q₁(ℓ) = q₀ + d_free − h A⁻¹ G₀ᵀ ℓ`.
     #[inline]
     fn end(&self, impulse: &S::PerConstraint<f64>) -> S::PerCoordinate<f64> {
         let mut end = self.free_end.clone();
