@@ -17,7 +17,7 @@ use nalgebra::{DMatrix, DVector};
 mod symplecticity {
     use super::*;
 
-    /// Defects are below this many roundings times `‖DΨ‖²` on the tangent space; measured 1.9.
+    /// Defects are below this many roundings times `‖DΨ‖²` on the tangent space; measured 2.9.
     const ROUNDINGS: f64 = 8.0;
     const H: f64 = 0.05;
 
