@@ -6,25 +6,33 @@ use evi_core::prelude::*;
 use evi_examples::{DoublePendulum, Start};
 use evi_tests::{Random, largest_difference};
 
-/// Four links in the plane, a spring between the first and the last bob.
-#[derive(MechanicalSystem, Clone, Copy)]
-#[evi(
-    coordinates(x1, y1, x2, y2, x3, y3, x4, y4),
-    kinetic = 0.5 * m1 * (der(x1).powi(2) + der(y1).powi(2)) + 0.5 * m2 * (der(x2).powi(2) + der(y2).powi(2))
-            + 0.5 * m1 * (der(x3).powi(2) + der(y3).powi(2)) + 0.5 * m2 * (der(x4).powi(2) + der(y4).powi(2)),
-    potential = 9.81 * (m1 * y1 + m2 * y2 + m1 * y3 + m2 * y4)
-            + 0.5 * k * ((x4 - x1).powi(2) + (y4 - y1).powi(2)) + quartic * (x1.powi(4) + y4.powi(4)),
-    constraint(link1: x1.powi(2) + y1.powi(2) == 1.0),
-    constraint(link2: (x2 - x1).powi(2) + (y2 - y1).powi(2) == 1.0),
-    constraint(link3: (x3 - x2).powi(2) + (y3 - y2).powi(2) == 1.0),
-    constraint(link4: (x4 - x3).powi(2) + (y4 - y3).powi(2) == 1.0),
-)]
-struct Chain {
-    m1: f64,
-    m2: f64,
-    k: f64,
-    quartic: f64,
+/// Four links in the plane and a spring between the first and the last bob, with more potential energy.
+macro_rules! chain {
+    ($name:ident, $($potential:tt)*) => {
+        #[derive(MechanicalSystem, Clone, Copy)]
+        #[evi(
+            coordinates(x1, y1, x2, y2, x3, y3, x4, y4),
+            kinetic = 0.5 * m1 * (der(x1).powi(2) + der(y1).powi(2)) + 0.5 * m2 * (der(x2).powi(2) + der(y2).powi(2))
+                    + 0.5 * m1 * (der(x3).powi(2) + der(y3).powi(2)) + 0.5 * m2 * (der(x4).powi(2) + der(y4).powi(2)),
+            potential = 9.81 * (m1 * y1 + m2 * y2 + m1 * y3 + m2 * y4)
+                    + 0.5 * k * ((x4 - x1).powi(2) + (y4 - y1).powi(2)) $($potential)*,
+            constraint(link1: x1.powi(2) + y1.powi(2) == 1.0),
+            constraint(link2: (x2 - x1).powi(2) + (y2 - y1).powi(2) == 1.0),
+            constraint(link3: (x3 - x2).powi(2) + (y3 - y2).powi(2) == 1.0),
+            constraint(link4: (x4 - x3).powi(2) + (y4 - y3).powi(2) == 1.0),
+        )]
+        struct $name {
+            m1: f64,
+            m2: f64,
+            k: f64,
+            quartic: f64,
+        }
+    };
 }
+
+// A scene with `quartic = 0` moves as one whose Lagrangian is quadratic, but its steps are not folded.
+chain!(QuadraticChain, + 0.0 * quartic);
+chain!(Chain, + quartic * (x1.powi(4) + y4.powi(4)));
 
 /// A saddle-point matrix with the pattern of the chain: couplings within a bob and between bobs 1 and 4.
 fn saddle_point(random: &mut Random, inertia: impl Fn(usize) -> f64) -> [[f64; 12]; 12] {
@@ -68,14 +76,18 @@ type Own = <Chain as MechanicalSystem>::KktFactors;
 #[test]
 fn own_elimination_of_well_scaled_matrices_is_backward_stable() {
     let mut random = Random::new(1);
+    let mut largest = 0.0_f64;
     for _ in 0..1_000 {
         let matrix = saddle_point(&mut random, |i| 1.0 + 0.3 * (i as f64).sin());
         let rhs = random.array(-1.0, 1.0);
         let (own, residual) = solved::<Own>(&matrix, &rhs);
         assert!(matches!(own, Guarded::Own(_)));
-        // Row-wise backward error of twelve eliminations whose pivots may lose digits; measured below 3e-13.
-        assert!(residual < 1e-11, "{residual:e}");
+        assert!(residual.is_finite());
+        largest = largest.max(residual);
     }
+    println!("own elimination: {:.0} ε", largest / f64::EPSILON);
+    // Row by row, against the row's terms: pivots may lose digits, here up to 244 ε.
+    assert!(largest < 1000.0 * f64::EPSILON, "{largest:e}");
 }
 
 #[test]
@@ -102,25 +114,6 @@ fn a_singular_matrix_is_reported_by_the_fallback() {
     }
     let singular = Own::factor(&matrix).err().expect("two constraints are one");
     assert!(singular.pivot_ratio < 1e-14, "{singular}");
-}
-
-/// A scene with `quartic = 0` moves as one without that term, whose Lagrangian is quadratic: folded and general step agree.
-#[derive(MechanicalSystem, Clone, Copy)]
-#[evi(
-    coordinates(x1, y1, x2, y2, x3, y3, x4, y4),
-    kinetic = 0.5 * m1 * (der(x1).powi(2) + der(y1).powi(2)) + 0.5 * m2 * (der(x2).powi(2) + der(y2).powi(2))
-            + 0.5 * m1 * (der(x3).powi(2) + der(y3).powi(2)) + 0.5 * m2 * (der(x4).powi(2) + der(y4).powi(2)),
-    potential = 9.81 * (m1 * y1 + m2 * y2 + m1 * y3 + m2 * y4)
-            + 0.5 * k * ((x4 - x1).powi(2) + (y4 - y1).powi(2)),
-    constraint(link1: x1.powi(2) + y1.powi(2) == 1.0),
-    constraint(link2: (x2 - x1).powi(2) + (y2 - y1).powi(2) == 1.0),
-    constraint(link3: (x3 - x2).powi(2) + (y3 - y2).powi(2) == 1.0),
-    constraint(link4: (x4 - x3).powi(2) + (y4 - y3).powi(2) == 1.0),
-)]
-struct QuadraticChain {
-    m1: f64,
-    m2: f64,
-    k: f64,
 }
 
 /// Two bobs without springs, every matrix of whose step is diagonal, and the same with a vanishing quartic potential.
@@ -157,13 +150,17 @@ where
     assert!(A::STRUCTURE.hessian.is_constant() && !B::STRUCTURE.hessian.is_constant());
     let mut folded = Simulation::new(folded, scheme).start(start, [0.0; N]).expect("consistent");
     let mut general = Simulation::new(general, scheme).start(start, [0.0; N]).expect("consistent");
+    let mut largest = 0.0_f64;
     for _ in 0..100 {
         let (folded, general) = (folded.advance().expect("solvable"), general.advance().expect("solvable"));
-        // Round-off of 100 steps, grown by the motion: measured below 2e-13 for velocities of size 5.
         let difference =
             largest_difference(folded.q(), general.q()).max(largest_difference(folded.v(), general.v()));
-        assert!(difference < 1e-12, "{difference:e} at t = {}", folded.t());
+        assert!(difference.is_finite());
+        largest = largest.max(difference);
     }
+    println!("{}: {largest:.1e}", core::panic::Location::caller());
+    // Round-off of 100 steps with velocities of size 5, grown by the motion: 8e-14 with springs, 1e-14 without.
+    assert!(largest < 2e-13, "{largest:e}");
     assert!(largest_difference(folded.state().q(), &start) > 0.1, "the motion is not vacuous");
 }
 
@@ -194,8 +191,8 @@ fn folded_and_general_step_agree_where_nothing_is_coupled() {
 
 #[test]
 fn folded_and_general_step_agree_where_a_spring_couples_coordinates() {
-    let (m1, m2, k) = (1.3, 0.7, 20.0);
-    let (folded, general) = (QuadraticChain { m1, m2, k }, Chain { m1, m2, k, quartic: 0.0 });
+    let (m1, m2, k, quartic) = (1.3, 0.7, 20.0, 0.0);
+    let (folded, general) = (QuadraticChain { m1, m2, k, quartic }, Chain { m1, m2, k, quartic });
     check_schemes(folded, general, [0.6, -0.8, 1.6, -0.8, 1.6, -1.8, 2.4, -2.4]);
 }
 
@@ -211,7 +208,8 @@ fn the_impulses_of_earlier_steps_are_a_first_guess_only() {
     again.advance_to(2.0).expect("solvable");
     // A hundred steps that differ in their last bits.
     let difference = largest_difference(run.state().q(), again.state().q());
-    assert!(difference < 1e-13, "{difference:e}");
+    println!("restarted: {difference:.1e}");
+    assert!(difference < 1e-14, "{difference:e}");
 }
 
 #[test]

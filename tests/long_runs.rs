@@ -13,9 +13,9 @@ const STEPS: usize = 100_000;
 /// Blocks of 1,562 steps: tens of periods of the slowest oscillation at the smallest step size below.
 const BLOCKS: usize = 64;
 /// Largest `|φ|` for unit rods. A square of a coordinate difference of size 1, made of coordinates of size 2
-/// that are rounded to one ε, is off by a few of them: 4.0 measured.
+/// that are rounded to one ε, is off by a few of them: 5 measured.
 const CONSTRAINT: f64 = 8.0 * f64::EPSILON;
-/// Largest `|G v| / (‖G‖ ‖v‖)`: a scalar product of four terms, 1.4 ε measured.
+/// Largest `|G v| / (‖G‖ ‖v‖)`: a scalar product of four terms, 1.7 ε measured.
 const HIDDEN_CONSTRAINT: f64 = 4.0 * f64::EPSILON;
 /// A drift that the interval excludes may sum up, over the run, to this part of the energy's oscillation:
 /// 1/400 measured.
@@ -39,7 +39,12 @@ impl Record {
 
 /// The largest of `seen` and the magnitudes of `values`; NaN is larger than all.
 fn largest(seen: f64, values: &[f64]) -> f64 {
-    values.iter().fold(seen, |largest, value| if value.abs() <= largest { largest } else { value.abs() })
+    values.iter().fold(
+        seen,
+        |largest: f64, value| {
+            if value.abs() <= largest || largest.is_nan() { largest } else { value.abs() }
+        },
+    )
 }
 
 #[track_caller]
@@ -66,6 +71,14 @@ where
 #[track_caller]
 fn check_constraints(record: &Record, hidden_constraint: f64) {
     let in_ulps = |residual: f64| residual / f64::EPSILON;
+    println!(
+        "{}: φ {:.2} ε, G v {:.2} ε, energy {:.3e}, {:?}",
+        core::panic::Location::caller(),
+        in_ulps(record.constraint),
+        in_ulps(record.hidden_constraint),
+        record.energy_error,
+        record.drift()
+    );
     assert!(record.constraint <= CONSTRAINT, "φ: {:.2} ε", in_ulps(record.constraint));
     assert!(record.hidden_constraint <= hidden_constraint, "G v: {:.2} ε", in_ulps(record.hidden_constraint));
     // Exact zeros would mean that nothing moved.
@@ -113,6 +126,7 @@ where
 {
     let record = record(system, Rk4::new(h), start);
     let drift = record.drift();
+    println!("{}: {drift:?}", core::panic::Location::caller());
     assert!(!drift.is_indistinguishable_from_zero(), "{drift:?}");
     assert!(drift.slope.abs() > 3.0 * drift.half_width, "{drift:?}");
     assert!(record.constraint > 1e6 * CONSTRAINT, "the differentiated constraints do not drift");
@@ -155,7 +169,8 @@ fn the_spherical_pendulum_keeps_its_energy_with_an_exponential_scheme() {
 #[test]
 fn rattle_keeps_the_energy_too() {
     /// Its last kick carries the weight `½ h g`, which the projection cancels: near the turning points that
-    /// is a thousand times the velocity, and so is its round-off: 331 ε measured.
+    /// is a thousand times the velocity, and so is its round-off: 157 ε measured, more or less with the
+    /// last bits of the motion.
     const HIDDEN_CONSTRAINT_AT_TURNING_POINTS: f64 = 1e3 * f64::EPSILON;
     let record = record(DOUBLE, Rattle::new(0.05), mild());
     check_constraints(&record, HIDDEN_CONSTRAINT_AT_TURNING_POINTS);
