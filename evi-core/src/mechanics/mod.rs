@@ -1,11 +1,12 @@
 //! Mechanics of a scene in continuous and discrete time, without a step size policy or an iteration of steps.
 //!
-//! In: a scene's kernels and their constants. Out: energies, momenta, projections, accelerations with multipliers
+//! In: a scene's kernels and their constants. Out: energies, momenta, forces, projections, accelerations with multipliers
 //! ([`Mechanics`]), the equations of one step (`DiscreteLagrangian`), and for quadratic Lagrangians the step itself
 //! but for its constraints (`FoldedStep`).
 
 mod constraints;
 mod folded_step;
+mod forces;
 mod momentum;
 mod observables;
 mod state;
@@ -13,6 +14,7 @@ mod step_equations;
 
 pub(crate) use constraints::Directions;
 pub(crate) use folded_step::FoldedStep;
+pub(crate) use forces::{ForceDerivatives, ForcePoint};
 pub use momentum::{Acceleration, ProjectionError};
 pub(crate) use momentum::{Projected, relative};
 pub(crate) use observables::norm;

@@ -6,6 +6,7 @@
 mod basis;
 mod frequency;
 mod quadrature;
+mod scene_frequencies;
 
 #[cfg(feature = "generic")]
 pub(crate) use basis::check_interpolant;
@@ -15,6 +16,7 @@ pub use basis::{
 };
 pub use frequency::Frequency;
 pub use quadrature::{Quadrature, QuadratureError};
+pub use scene_frequencies::{SceneFrequencies, SceneTable};
 
 /// A scheme that does not define a step.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]

@@ -4,21 +4,22 @@ use std::collections::{HashMap, HashSet};
 
 use proc_macro2::{Ident, Span};
 
-use super::coordinate_names;
+use super::{coordinate_names, input_names};
 use crate::diagnostics::Diagnostics;
 use crate::expr::{ExprId, Graph, Symbol};
-use crate::syntax::{Declaration, Expression, Item};
+use crate::syntax::{Declaration, Expression, Item, Labelled};
 
 /// Reports names that are reserved or given twice.
 pub(super) fn names(declaration: &Declaration, diagnostics: &mut Diagnostics) {
     let fields = declaration.fields.iter().map(|field| ("field", &field.name));
     let coordinates = coordinate_names(declaration).iter().map(|name| ("coordinate", name));
+    let inputs = input_names(declaration).map(|name| ("input", name));
     let lets = declaration.items.iter().filter_map(|item| match item {
         Item::Let(definition) => Some(("shared expression", &definition.name)),
         _ => None,
     });
     let mut owners: HashMap<String, &str> = HashMap::new();
-    for (kind, name) in fields.chain(coordinates).chain(lets) {
+    for (kind, name) in fields.chain(coordinates).chain(inputs).chain(lets) {
         if reserved(kind, name, diagnostics) {
             continue;
         }
@@ -26,11 +27,35 @@ pub(super) fn names(declaration: &Declaration, diagnostics: &mut Diagnostics) {
             diagnostics.report(name.span(), format!("the name `{name}` is taken by a {owner}"));
         }
     }
-    let mut constraints: HashSet<String> = HashSet::new();
-    for name in super::constraints(declaration).filter_map(|constraint| constraint.name.as_ref()) {
-        if !constraints.insert(name.to_string()) {
-            let message = format!("there is a constraint `{name}` already: each needs a name of its own");
-            diagnostics.report(name.span(), message);
+    let constraints = super::constraints(declaration).filter_map(|constraint| constraint.name.as_ref());
+    distinct(constraints, diagnostics, |name| {
+        format!("there is a constraint `{name}` already: each needs a name of its own")
+    });
+    distinct(super::observable_names(declaration), diagnostics, |name| {
+        format!("there is an observed quantity `{name}` already: each needs a name of its own")
+    });
+    let labels = |item: fn(&Item) -> Option<&Labelled>| {
+        declaration.items.iter().filter_map(item).flat_map(|labelled| &labelled.names)
+    };
+    let forces = labels(|item| if let Item::Force(force) = item { Some(force) } else { None });
+    distinct(forces, diagnostics, |name| {
+        format!("there is a force on `{name}` already: write one force, the sum of both")
+    });
+    let frequencies =
+        labels(|item| if let Item::Frequency(frequency) = item { Some(frequency) } else { None });
+    distinct(frequencies, diagnostics, |name| format!("`{name}` has a frequency already"));
+}
+
+/// Reports every name that has stood before.
+fn distinct<'n>(
+    names: impl Iterator<Item = &'n Ident>,
+    diagnostics: &mut Diagnostics,
+    message: impl Fn(&Ident) -> String,
+) {
+    let mut known: HashSet<String> = HashSet::new();
+    for name in names {
+        if !known.insert(name.to_string()) {
+            diagnostics.report(name.span(), message(name));
         }
     }
 }
@@ -71,6 +96,7 @@ pub(super) fn items(declaration: &Declaration, diagnostics: &mut Diagnostics) {
         |item| if let Item::Potential { keyword, .. } = item { Some(keyword) } else { None },
         diagnostics,
     );
+    only(|item| if let Item::Dissipation { keyword, .. } = item { Some(keyword) } else { None }, diagnostics);
     if let (Some(_), Some(energy), _) | (Some(_), None, Some(energy)) = (lagrangian, kinetic, potential) {
         let message =
             "the Lagrangian is given twice: write either `lagrangian = ..` or `kinetic = .., potential = ..`";
@@ -137,5 +163,31 @@ pub(super) fn constraint_moves_with_coordinates(
 ) {
     if !graph.dependence(residual).on_q {
         diagnostics.report(name.span(), format!("constraint `{name}` contains no coordinate"));
+    }
+}
+
+/// Reports a dissipation that no motion changes.
+pub(super) fn dissipation_has_velocities(
+    keyword: &Ident,
+    dissipation: ExprId,
+    graph: &Graph,
+    diagnostics: &mut Diagnostics,
+) {
+    if !graph.dependence(dissipation).on_v {
+        let message = "the dissipation contains no `der(..)`: its force −∂D/∂(der q) vanishes";
+        diagnostics.report(keyword.span(), message);
+    }
+}
+
+/// Reports inputs that act nowhere.
+pub(super) fn inputs_are_used(
+    declaration: &Declaration,
+    unused: impl Iterator<Item = usize>,
+    diagnostics: &mut Diagnostics,
+) {
+    let inputs: Vec<&Ident> = input_names(declaration).collect();
+    for input in unused.map(|index| inputs[index]) {
+        diagnostics
+            .report(input.span(), format!("input `{input}` is named by no force and no observed quantity"));
     }
 }

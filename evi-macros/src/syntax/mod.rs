@@ -7,7 +7,9 @@ mod attribute;
 mod expression;
 mod integers;
 mod item;
+mod labelled;
 
 pub(crate) use attribute::{Declaration, Field, NotAnItem, parse};
 pub(crate) use expression::{Expression, Resolved, Resolver, lower};
 pub(crate) use item::{Constraint, Coordinates, Item, Let};
+pub(crate) use labelled::Labelled;
