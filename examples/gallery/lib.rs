@@ -4,13 +4,17 @@
 //! benchmarks share.
 
 pub mod double_pendulum;
+pub mod driven_pendulum;
 pub mod harmonic_oscillator;
+pub mod kapitza_pendulum;
 pub mod pendulum;
 pub mod spherical_pendulum;
 pub mod stiff_spring_pendulum;
 
 pub use double_pendulum::DoublePendulum;
+pub use driven_pendulum::DrivenPendulum;
 pub use harmonic_oscillator::HarmonicOscillator;
+pub use kapitza_pendulum::KapitzaPendulum;
 pub use pendulum::Pendulum;
 pub use spherical_pendulum::SphericalPendulum;
 pub use stiff_spring_pendulum::StiffSpringPendulum;

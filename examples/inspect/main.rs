@@ -8,7 +8,10 @@ use clap::Parser;
 
 use evi_core::prelude::*;
 use evi_core::report::SystemReport;
-use evi_examples::{DoublePendulum, HarmonicOscillator, Pendulum, SphericalPendulum, StiffSpringPendulum};
+use evi_examples::{
+    DoublePendulum, DrivenPendulum, HarmonicOscillator, KapitzaPendulum, Pendulum, SphericalPendulum,
+    StiffSpringPendulum,
+};
 
 /// Equations, structure and generated code of a scene of the gallery.
 #[derive(Parser)]
@@ -36,9 +39,11 @@ struct Scene {
     source: Option<&'static str>,
 }
 
-const SCENES: [Scene; 5] = [
+const SCENES: [Scene; 7] = [
     Scene::of::<DoublePendulum>(),
+    Scene::of::<DrivenPendulum>(),
     Scene::of::<HarmonicOscillator>(),
+    Scene::of::<KapitzaPendulum>(),
     Scene::of::<Pendulum>(),
     Scene::of::<SphericalPendulum>(),
     Scene::of::<StiffSpringPendulum>(),

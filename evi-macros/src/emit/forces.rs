@@ -50,6 +50,7 @@ pub(super) fn frequencies(struct_name: &Ident, kernels: &Kernels<'_>, programs: 
     let values = programs.frequencies.iter().map(|&frequency| kernels.constant(frequency));
     quote! {
         #[automatically_derived]
+        #[allow(unused_variables, trivial_numeric_casts, clippy::all)]
         impl ::evi_core::__private::HasFrequencies for #struct_name {
             #[inline]
             fn frequencies<T: ::evi_core::__private::Scalar>(

@@ -11,11 +11,11 @@ use crate::syntax::{Declaration, Expression, Item, Labelled};
 
 /// Reports names that are reserved or given twice.
 pub(super) fn names(declaration: &Declaration, diagnostics: &mut Diagnostics) {
-    let fields = declaration.fields.iter().map(|field| ("field", &field.name));
-    let coordinates = coordinate_names(declaration).iter().map(|name| ("coordinate", name));
-    let inputs = input_names(declaration).map(|name| ("input", name));
+    let fields = declaration.fields.iter().map(|field| ("a field", &field.name));
+    let coordinates = coordinate_names(declaration).iter().map(|name| ("a coordinate", name));
+    let inputs = input_names(declaration).map(|name| ("an input", name));
     let lets = declaration.items.iter().filter_map(|item| match item {
-        Item::Let(definition) => Some(("shared expression", &definition.name)),
+        Item::Let(definition) => Some(("a shared expression", &definition.name)),
         _ => None,
     });
     let mut owners: HashMap<String, &str> = HashMap::new();
@@ -24,7 +24,7 @@ pub(super) fn names(declaration: &Declaration, diagnostics: &mut Diagnostics) {
             continue;
         }
         if let Some(owner) = owners.insert(name.to_string(), kind) {
-            diagnostics.report(name.span(), format!("the name `{name}` is taken by a {owner}"));
+            diagnostics.report(name.span(), format!("the name `{name}` is taken by {owner}"));
         }
     }
     let constraints = super::constraints(declaration).filter_map(|constraint| constraint.name.as_ref());
@@ -34,16 +34,18 @@ pub(super) fn names(declaration: &Declaration, diagnostics: &mut Diagnostics) {
     distinct(super::observable_names(declaration), diagnostics, |name| {
         format!("there is an observed quantity `{name}` already: each needs a name of its own")
     });
-    let labels = |item: fn(&Item) -> Option<&Labelled>| {
-        declaration.items.iter().filter_map(item).flat_map(|labelled| &labelled.names)
-    };
-    let forces = labels(|item| if let Item::Force(force) = item { Some(force) } else { None });
+    let forces = declaration.items.iter().filter_map(|item| match item {
+        Item::Force(Labelled { names, .. }) => names.first(),
+        _ => None,
+    });
     distinct(forces, diagnostics, |name| {
         format!("there is a force on `{name}` already: write one force, the sum of both")
     });
-    let frequencies =
-        labels(|item| if let Item::Frequency(frequency) = item { Some(frequency) } else { None });
-    distinct(frequencies, diagnostics, |name| format!("`{name}` has a frequency already"));
+    let frequencies = declaration.items.iter().filter_map(|item| match item {
+        Item::Frequency(Labelled { names, .. }) => Some(names),
+        _ => None,
+    });
+    distinct(frequencies.flatten(), diagnostics, |name| format!("`{name}` has a frequency already"));
 }
 
 /// Reports every name that has stood before.
@@ -67,7 +69,7 @@ pub(super) fn reserved(kind: &str, name: &Ident, diagnostics: &mut Diagnostics) 
         "der" => "the time derivative",
         _ => return false,
     };
-    diagnostics.report(name.span(), format!("`{name}` is {meaning}: a {kind} needs another name"));
+    diagnostics.report(name.span(), format!("`{name}` is {meaning}: {kind} needs another name"));
     true
 }
 

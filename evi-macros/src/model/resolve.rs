@@ -198,10 +198,6 @@ impl Resolver for Scope<'_> {
         if text == "t" {
             return self.variable(graph, name, ("the time", Symbol::Time), diagnostics);
         }
-        if let Some(index) = self.inputs.iter().position(|input| *input == text) {
-            self.is_used[index] = true;
-            return self.variable(graph, name, ("an input", Symbol::Input(index)), diagnostics);
-        }
         if let Some(index) = self.fields.iter().position(|field| field.name == text) {
             if self.fields[index].is_f64 {
                 return Resolved::Value(graph.symbol(Symbol::Parameter(index)));
@@ -212,6 +208,10 @@ impl Resolver for Scope<'_> {
                 diagnostics.report(name.span(), message);
             }
             return Resolved::Mistaken;
+        }
+        if let Some(index) = self.inputs.iter().position(|input| *input == text) {
+            self.is_used[index] = true;
+            return self.variable(graph, name, ("an input", Symbol::Input(index)), diagnostics);
         }
         if self.all_lets.contains(&text) {
             let message = if self.context == let_context(&text) {
@@ -266,7 +266,7 @@ impl Resolver for Scope<'_> {
     }
 
     fn define(&mut self, name: &Ident, value: Option<ExprId>, diagnostics: &mut Diagnostics) {
-        check::reserved("shared expression", name, diagnostics);
+        check::reserved("a shared expression", name, diagnostics);
         self.locals.last_mut().expect("a `let` stands in a block").push((name.to_string(), value));
     }
 

@@ -16,10 +16,10 @@ pub(super) enum Variables {
 }
 
 /// Why a frequency follows nothing.
-const FREQUENCY_IS_CONSTANT: &str = "a frequency is constant over a run, made of parameters: one that follows the state \
-                                     would make the steps lose their symplecticity";
-const INPUTS_ARE_FOR_FORCES: &str = "only `force` and `observe` may name inputs: they are not part of the energies, \
-                                     whose derivatives make a step symplectic, nor of the constraints";
+const FREQUENCY_IS_CONSTANT: &str = "a frequency is constant over a run and made of parameters only: one that \
+                                     followed the state would cost the steps their symplecticity";
+const INPUTS_ARE_FOR_FORCES: &str = "only `force` and `observe` may name inputs, for neither energies nor \
+                                     constraints may change from step to step";
 
 impl Variables {
     /// Why a name that stands for a coordinate, the time or an input itself cannot stand here.

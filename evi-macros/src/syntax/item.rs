@@ -80,13 +80,19 @@ const KEYWORDS: [&str; 11] = [
 
 const FORCE: Form = Form {
     example: "force(coordinate: expression)",
+    unnamed: "a force names its coordinate",
     label: "a force",
     second_name: Some("a force acts on one coordinate: write one `force(..)` for each"),
 };
-const FREQUENCY: Form =
-    Form { example: "frequency(coordinate, ..: expression)", label: "a frequency", second_name: None };
+const FREQUENCY: Form = Form {
+    example: "frequency(coordinate, ..: expression)",
+    unnamed: "a frequency names its coordinates",
+    label: "a frequency",
+    second_name: None,
+};
 const OBSERVE: Form = Form {
     example: "observe(name: expression)",
+    unnamed: "an observed quantity has a name",
     label: "an observed quantity",
     second_name: Some("an observed quantity has one name: write one `observe(..)` for each"),
 };

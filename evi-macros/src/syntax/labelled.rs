@@ -25,7 +25,9 @@ pub(crate) struct NameList {
 pub(super) struct Form {
     /// The whole item.
     pub(super) example: &'static str,
-    /// What stands before the colon.
+    /// What is missing where no name stands before a colon.
+    pub(super) unnamed: &'static str,
+    /// What the item is called.
     pub(super) label: &'static str,
     /// What to do about a second name, where only one may stand.
     pub(super) second_name: Option<&'static str>,
@@ -45,11 +47,12 @@ pub(super) fn labelled(
     let tokens: Vec<TokenTree> = group.stream().into_iter().collect();
     let Some(colon) = colon(&tokens).filter(|&colon| colon > 0) else {
         let span = tokens.first().map_or(keyword.span(), TokenTree::span);
-        diagnostics.report(span, format!("{} has a name: `{}`", form.label, form.example));
+        diagnostics.report(span, format!("{}: `{}`", form.unnamed, form.example));
         return nothing;
     };
     let names = names(&tokens[..colon], form.label, diagnostics);
-    if let (Some(message), Some(second)) = (form.second_name, names.get(1)) {
+    let has_comma = split_at_commas(tokens[..colon].iter().cloned().collect()).len() > 1;
+    if let (Some(message), Some(second), true) = (form.second_name, names.get(1), has_comma) {
         diagnostics.report(second.span(), message);
     }
     let value = tokens[colon + 1..].iter().cloned().collect();
