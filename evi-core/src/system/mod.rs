@@ -240,7 +240,7 @@ impl Structure {
         !self.mass.on_v
     }
 
-    /// Whether no second derivative of `L` couples two coordinates: every matrix of a step is diagonal.
+    /// Whether no second derivative of `L` couples two coordinates: every matrix of a step without other forces is diagonal.
     pub const fn is_uncoupled(&self) -> bool {
         is_diagonal(self.hessian.qq) && is_diagonal(self.hessian.vq) && is_diagonal(self.hessian.vv)
     }

@@ -181,15 +181,18 @@ pub(super) fn dissipation_has_velocities(
     }
 }
 
-/// Reports inputs that act nowhere.
+/// Reports inputs that stand in none of the equations that may name them.
 pub(super) fn inputs_are_used(
     declaration: &Declaration,
-    unused: impl Iterator<Item = usize>,
+    equations: &[ExprId],
+    graph: &Graph,
     diagnostics: &mut Diagnostics,
 ) {
-    let inputs: Vec<&Ident> = input_names(declaration).collect();
-    for input in unused.map(|index| inputs[index]) {
-        diagnostics
-            .report(input.span(), format!("input `{input}` is named by no force and no observed quantity"));
+    let symbols = graph.symbols(equations);
+    for (index, input) in input_names(declaration).enumerate() {
+        if !symbols.contains(&Symbol::Input(index)) {
+            let message = format!("input `{input}` is named by no force and no observed quantity");
+            diagnostics.report(input.span(), message);
+        }
     }
 }

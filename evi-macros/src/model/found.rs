@@ -93,6 +93,12 @@ impl Found {
         }
     }
 
+    /// The equations that may name inputs.
+    pub(super) fn roots_with_inputs(&self) -> Vec<ExprId> {
+        let forces = self.forces.iter().map(|(_, _, root, _)| *root);
+        forces.chain(self.observables.iter().map(|(_, root)| *root)).collect()
+    }
+
     /// The model of items without mistakes.
     pub(super) fn into_model(
         mut self,

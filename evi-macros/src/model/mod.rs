@@ -164,7 +164,7 @@ pub(crate) fn resolve(
     }
     if diagnostics.is_empty() {
         // Elsewhere, what names the input may be what is mistaken.
-        check::inputs_are_used(declaration, scope.unused_inputs(), diagnostics);
+        check::inputs_are_used(declaration, &found.roots_with_inputs(), graph, diagnostics);
     }
     if !diagnostics.is_empty() {
         return None;

@@ -17,8 +17,6 @@ pub(super) struct Scope<'a> {
     reported_fields: Vec<usize>,
     coordinates: Vec<String>,
     inputs: Vec<String>,
-    /// Whether each input has been named.
-    is_used: Vec<bool>,
     /// Whether all coordinates are known; otherwise a mistake has been reported there, and any name may be
     /// one.
     has_all_coordinates: bool,
@@ -47,7 +45,6 @@ impl<'a> Scope<'a> {
             fields: &declaration.fields,
             reported_fields: Vec::new(),
             coordinates: names.iter().map(Ident::to_string).collect(),
-            is_used: vec![false; inputs.len()],
             inputs,
             has_all_coordinates: is_complete && !names.is_empty(),
             lets: HashMap::new(),
@@ -148,11 +145,6 @@ impl<'a> Scope<'a> {
         }
     }
 
-    /// The inputs that no equation has named so far, by index.
-    pub(super) fn unused_inputs(&self) -> impl Iterator<Item = usize> {
-        self.is_used.iter().enumerate().filter(|(_, is_used)| !**is_used).map(|(index, _)| index)
-    }
-
     /// The node of a coordinate, the time or an input, where it may stand.
     fn variable(
         &self,
@@ -210,7 +202,6 @@ impl Resolver for Scope<'_> {
             return Resolved::Mistaken;
         }
         if let Some(index) = self.inputs.iter().position(|input| *input == text) {
-            self.is_used[index] = true;
             return self.variable(graph, name, ("an input", Symbol::Input(index)), diagnostics);
         }
         if self.all_lets.contains(&text) {
