@@ -8,6 +8,7 @@ mod forces;
 mod generic;
 mod implementation;
 mod kernel;
+mod pieces;
 mod report;
 mod storage;
 

@@ -8,6 +8,8 @@ mod expression;
 mod integers;
 mod item;
 mod labelled;
+mod nesting;
+mod spine;
 
 pub(crate) use attribute::{Declaration, Field, NotAnItem, parse};
 pub(crate) use expression::{Expression, Resolved, Resolver, lower};
