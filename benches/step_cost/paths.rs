@@ -6,6 +6,7 @@ use evi_benches::hand_written::{
 };
 use evi_core::baseline::{Dense, Rattle, Rk4};
 use evi_core::generic::{GenericEvi, GenericRun, GenericSystem};
+use evi_core::integrator::{Statistics, Tally};
 use evi_core::mechanics::Mechanics;
 use evi_core::prelude::*;
 use evi_examples::{DoublePendulum, SphericalPendulum, Start, StiffSpringPendulum};
@@ -26,24 +27,32 @@ pub(crate) struct Path {
 
 /// What the steps of a run have in common.
 pub(crate) struct Observed {
-    /// Newton corrections per step; `None` for a method without an iteration.
-    pub(crate) mean_corrections: Option<f64>,
+    /// Newton corrections per step; 0 for a method without an iteration.
+    pub(crate) mean_corrections: f64,
     /// Largest `|φ|`; `None` without constraints.
     pub(crate) max_constraint_error: Option<f64>,
 }
 
 /// A run of any kind.
 trait Steps {
-    fn advance(&mut self);
+    /// The same run, with its corrections counted: what is timed does not count them.
+    type Counted: Corrections;
 
-    /// Takes a step and returns the number of Newton corrections, if there is an iteration.
-    fn advance_counted(&mut self) -> Option<u64>;
+    fn counted(self) -> Self::Counted;
+
+    fn advance(&mut self);
 
     /// A coordinate, so that no step is superfluous.
     fn coordinate(&self) -> f64;
 
     /// Largest `|φ|`, if there are constraints.
     fn constraint_error(&self) -> Option<f64>;
+}
+
+/// A run whose corrections are counted.
+trait Corrections: Steps {
+    /// Newton corrections so far.
+    fn corrections(&self) -> u64;
 }
 
 /// The three scenes, one after the other; in each the four standard paths first.
@@ -71,10 +80,8 @@ pub(crate) fn all() -> Vec<Path> {
     let mut path = Paths { scene: "stiff_spring_pendulum", paths: &mut paths };
     path.hand_written(pendulum, move || HandWrittenSpringPendulum::new(&pendulum, start, H));
     path.derived(pendulum, start);
-    let closed_form = move || ClosedFormSpringPendulum::new(&pendulum, start, H);
-    path.other("hand, in closed form", move || Written {
-        run: closed_form(),
-        mechanics: Mechanics::new(&pendulum),
+    path.other("hand, in closed form", move || {
+        Written::new(&pendulum, ClosedFormSpringPendulum::new(&pendulum, start, H))
     });
     paths
 }
@@ -102,7 +109,7 @@ impl Paths<'_> {
         S: MechanicalSystem<PerCoordinate<f64> = [f64; N]> + Copy + 'static,
         R: HandWritten<N>,
     {
-        self.add("hand", true, move || Written { run: start(), mechanics: Mechanics::new(&system) });
+        self.add("hand", true, move || Written::new(&system, start()));
     }
 
     /// The paths that need only the scene.
@@ -138,25 +145,25 @@ fn take(mut run: impl Steps, steps: u64) -> f64 {
     run.coordinate()
 }
 
-fn observe(mut run: impl Steps, steps: u64) -> Observed {
-    let mut corrections = Some(0);
+fn observe(run: impl Steps, steps: u64) -> Observed {
+    let mut run = run.counted();
     let mut max_constraint_error = run.constraint_error();
     for _ in 0..steps {
-        corrections = corrections.zip(run.advance_counted()).map(|(sum, corrections)| sum + corrections);
+        run.advance();
         max_constraint_error = max_constraint_error.zip(run.constraint_error()).map(|(a, b)| larger(a, b));
     }
-    let mean_corrections = corrections.map(|sum| sum as f64 / steps as f64);
-    Observed { mean_corrections, max_constraint_error }
+    Observed { mean_corrections: run.corrections() as f64 / steps as f64, max_constraint_error }
 }
 
-impl<S: MechanicalSystem, M: OneStep<S>> Steps for Run<S, M> {
-    fn advance(&mut self) {
-        Run::advance(self).expect("steps small enough");
+impl<S: MechanicalSystem, M: OneStep<S>, T: Tally> Steps for Run<S, M, T> {
+    type Counted = Run<S, M, Statistics>;
+
+    fn counted(self) -> Self::Counted {
+        self.with_tally(Statistics::default())
     }
 
-    fn advance_counted(&mut self) -> Option<u64> {
-        Steps::advance(self);
-        None
+    fn advance(&mut self) {
+        Run::advance(self).expect("steps small enough");
     }
 
     fn coordinate(&self) -> f64 {
@@ -168,14 +175,21 @@ impl<S: MechanicalSystem, M: OneStep<S>> Steps for Run<S, M> {
     }
 }
 
+impl<S: MechanicalSystem, M: OneStep<S>> Corrections for Run<S, M, Statistics> {
+    fn corrections(&self) -> u64 {
+        self.tally().corrections
+    }
+}
+
 impl<S: GenericSystem> Steps for GenericRun<S> {
-    fn advance(&mut self) {
-        GenericRun::advance(self).expect("steps small enough");
+    type Counted = Self;
+
+    fn counted(self) -> Self {
+        self
     }
 
-    fn advance_counted(&mut self) -> Option<u64> {
-        Steps::advance(self);
-        None
+    fn advance(&mut self) {
+        GenericRun::advance(self).expect("steps small enough");
     }
 
     fn coordinate(&self) -> f64 {
@@ -187,23 +201,43 @@ impl<S: GenericSystem> Steps for GenericRun<S> {
     }
 }
 
-/// A run written by hand, with the scene's constraints to judge it by.
-struct Written<S: MechanicalSystem, R> {
-    run: R,
-    mechanics: Mechanics<S>,
+impl<S: GenericSystem> Corrections for GenericRun<S> {
+    fn corrections(&self) -> u64 {
+        self.statistics().corrections
+    }
 }
 
-impl<const N: usize, S, R> Steps for Written<S, R>
+/// A run written by hand, with the scene's constraints to judge it by.
+struct Written<S: MechanicalSystem, R, const COUNTS: bool> {
+    run: R,
+    mechanics: Mechanics<S>,
+    /// Stays 0 unless it `COUNTS`.
+    corrections: u64,
+}
+
+impl<S: MechanicalSystem, R> Written<S, R, false> {
+    fn new(system: &S, run: R) -> Self {
+        Self { run, mechanics: Mechanics::new(system), corrections: 0 }
+    }
+}
+
+impl<const N: usize, S, R, const COUNTS: bool> Steps for Written<S, R, COUNTS>
 where
     S: MechanicalSystem<PerCoordinate<f64> = [f64; N]>,
     R: HandWritten<N>,
 {
-    fn advance(&mut self) {
-        self.run.advance().expect("steps small enough");
+    type Counted = Written<S, R, true>;
+
+    fn counted(self) -> Self::Counted {
+        let Self { run, mechanics, corrections } = self;
+        Written { run, mechanics, corrections }
     }
 
-    fn advance_counted(&mut self) -> Option<u64> {
-        self.run.advance().map(u64::from)
+    fn advance(&mut self) {
+        let corrections = self.run.advance().expect("steps small enough");
+        if COUNTS {
+            self.corrections += u64::from(corrections);
+        }
     }
 
     fn coordinate(&self) -> f64 {
@@ -212,6 +246,16 @@ where
 
     fn constraint_error(&self) -> Option<f64> {
         largest_magnitude(self.mechanics.constraint_residual_at(0.0, &self.run.q()).as_ref())
+    }
+}
+
+impl<const N: usize, S, R> Corrections for Written<S, R, true>
+where
+    S: MechanicalSystem<PerCoordinate<f64> = [f64; N]>,
+    R: HandWritten<N>,
+{
+    fn corrections(&self) -> u64 {
+        self.corrections
     }
 }
 

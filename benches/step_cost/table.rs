@@ -33,7 +33,7 @@ pub(crate) fn of(costs: &[Cost]) -> String {
             or_empty(ratio_of(|cost| Some(cost.nanoseconds)), |ratio| format!("{ratio:.2}")),
             cost.instructions.map_or("no valgrind".to_owned(), |count| format!("{count:.0}")),
             or_empty(ratio_of(|cost| cost.instructions), |ratio| format!("{ratio:.2}")),
-            or_empty(cost.observed.mean_corrections, |corrections| format!("{corrections:.2}")),
+            format!("{:.2}", cost.observed.mean_corrections),
             or_empty(cost.observed.max_constraint_error, |error| format!("{error:.1e}")),
         ));
     }
@@ -87,13 +87,13 @@ impl Csv {
         for cost in costs.iter().filter(|cost| cost.is_standard) {
             writeln!(
                 self.file,
-                "{},{},{:.2},{:.2},{},{},{}",
+                "{},{},{:.2},{:.2},{},{:.4},{}",
                 cost.scene,
                 cost.path,
                 cost.nanoseconds,
                 cost.spread,
                 or_empty(cost.instructions, |count| format!("{count:.1}")),
-                or_empty(cost.observed.mean_corrections, |corrections| format!("{corrections:.4}")),
+                cost.observed.mean_corrections,
                 or_empty(cost.observed.max_constraint_error, |error| format!("{error:e}")),
             )?;
         }

@@ -5,7 +5,7 @@ use super::{IterationFailure, OneStep, Scheme, StepError};
 use crate::array::Array;
 use crate::linear::{constraint_index, largest_magnitude};
 use crate::mechanics::{DiscreteLagrangian, FoldedStep, Mechanics, Projected, State, StepStart, relative};
-use crate::newton;
+use crate::newton::{self, Converged, Tally};
 use crate::scheme::{Frequency, Interpolant, Linear, Quadrature, SchemeError, checked_step_size};
 use crate::system::MechanicalSystem;
 
@@ -98,22 +98,22 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> OneStep<S> for EviS
     }
 
     #[inline]
-    fn advance(&mut self, state: &mut State<S>) -> Result<(), StepError> {
+    fn advance(&mut self, state: &mut State<S>, tally: &mut impl Tally) -> Result<(), StepError> {
         if FoldedStep::<S>::EXISTS
             && let Some(folded) = &mut self.folded
         {
-            return folded.advance(&self.action.mechanics, F::IS_STRAIGHT, self.action.h(), state);
+            return folded.advance(&self.action.mechanics, F::IS_STRAIGHT, self.action.h(), state, tally);
         }
         let h = self.action.h();
         let start_of_curve = Array::from_fn(|i| h * state.v[i]);
-        let difference = self.solve(state.t, &state.q, &state.p, start_of_curve)?;
+        let difference = self.solve(state.t, &state.q, &state.p, start_of_curve, tally)?;
         let t = state.t + h;
         let q = Array::from_fn(|i| state.q[i] + difference[i]);
         let momentum = self.action.end_momentum(state.t, &state.q, &difference);
         let mean_velocity = Array::from_fn(|i| difference[i] / h);
         let Projected { v, p } = self
             .mechanics()
-            .project_momentum(t, &q, &momentum, mean_velocity)
+            .project_momentum(t, &q, &momentum, mean_velocity, tally)
             .map_err(|cause| StepError::Projection { t, cause })?;
         state.replace(t, q, v, p)
     }
@@ -135,7 +135,7 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
         let difference = S::PerCoordinate::<f64>::from_fn(|i| q_curr[i] - q_prev[i]);
         // The part of this momentum normal to the constraints at q_curr goes into the impulse: no projection needed.
         let momentum = self.action.end_momentum(t_prev, q_prev, &difference);
-        let difference = self.solve(t_prev + self.action.h(), q_curr, &momentum, difference)?;
+        let difference = self.solve(t_prev + self.action.h(), q_curr, &momentum, difference, &mut ())?;
         Ok(Array::from_fn(|i| q_curr[i] + difference[i]))
     }
 
@@ -147,6 +147,7 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
         q: &S::PerCoordinate<f64>,
         p: &S::PerCoordinate<f64>,
         mut difference: S::PerCoordinate<f64>,
+        tally: &mut impl Tally,
     ) -> Result<S::PerCoordinate<f64>, StepError> {
         let (_, jacobian) = S::constraint_derivatives(&self.mechanics().constants, t, q);
         let start = StepStart { t, q, p, jacobian };
@@ -159,6 +160,9 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
             constraint_residual = largest_magnitude(constraint_rows);
             let kkt = kkt.factor().map_err(|matrix| IterationFailure::Singular { correction, matrix })?;
             smallest_pivot_ratio = smallest_pivot_ratio.min(kkt.pivot_ratio());
+            if kkt.is_fallback() {
+                tally.count_fallback();
+            }
             let mut update = residual;
             kkt.solve(&mut update);
             for i in 0..S::N_COORDINATES {
@@ -171,7 +175,10 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
             Ok(relative(kkt.scaled_length(update.as_ref()), scale))
         });
         match iteration {
-            Ok(_) => Ok(difference),
+            Ok(Converged { corrections }) => {
+                tally.count_corrections(corrections);
+                Ok(difference)
+            }
             Err(failure) => Err(IterationFailure::at(failure, t, constraint_residual, smallest_pivot_ratio)),
         }
     }

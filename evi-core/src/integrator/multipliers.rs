@@ -8,7 +8,7 @@ use super::{IterationFailure, StepError};
 use crate::array::Array;
 use crate::linear::{Factorization, largest_magnitude};
 use crate::mechanics::{Directions, FoldedStep, Mechanics, ProjectionError, State};
-use crate::newton::{self, NotConverged, Progress};
+use crate::newton::{self, NotConverged, Progress, Tally};
 use crate::system::MechanicalSystem;
 
 /// A folded step with the impulses that it has needed so far.
@@ -45,6 +45,7 @@ impl<S: MechanicalSystem> MultiplierStep<S> {
         is_straight: bool,
         h: f64,
         state: &mut State<S>,
+        tally: &mut impl Tally,
     ) -> Result<(), StepError> {
         let t = state.t + h;
         let mut p = self.folded.kicked_at_start(is_straight, &state.q, &state.p);
@@ -65,16 +66,18 @@ impl<S: MechanicalSystem> MultiplierStep<S> {
                 end_time: t,
                 free_end: q,
             };
-            if span.solve::<false>(&mut impulse).is_err() {
-                span.solve_anew(&mut impulse)?;
-            }
+            let corrections = match span.solve::<false>(&mut impulse, tally) {
+                Ok(corrections) => corrections,
+                Err(_) => span.solve_anew(&mut impulse, tally)?,
+            };
+            tally.count_corrections(corrections);
             q = span.end(&impulse);
             mechanics.subtract_constraint_force(jacobian.as_ref(), impulse.as_ref(), p.as_mut());
         }
         p = self.folded.kicked_at_end(is_straight, &q, &p);
         let mut v = self.folded.velocity(&p);
         if S::N_CONSTRAINTS > 0 {
-            self.project(mechanics, t, &q, &mut v, &mut p)?;
+            self.project(mechanics, t, &q, &mut v, &mut p, tally)?;
         }
         state.replace(t, q, v, p)?;
         self.remember(impulse);
@@ -104,12 +107,16 @@ impl<S: MechanicalSystem> MultiplierStep<S> {
         q: &S::PerCoordinate<f64>,
         v: &mut S::PerCoordinate<f64>,
         p: &mut S::PerCoordinate<f64>,
+        tally: &mut impl Tally,
     ) -> Result<(), StepError> {
         let (_, jacobian) = S::constraint_derivatives(&mechanics.constants, t, q);
         let directions = mechanics.constraint_directions(&jacobian, |x| self.folded.inverse_mass(x));
         let gram = mechanics
             .factor_gram(&jacobian, &directions)
             .map_err(|matrix| StepError::Projection { t, cause: ProjectionError::Singular(matrix) })?;
+        if gram.is_fallback() {
+            tally.count_fallback();
+        }
         let mut impulse = S::PerConstraint::<f64>::from_fn(|_| 0.0);
         // Twice: near a turning point `v` is a small difference of large velocities, whose round-off the first time leaves.
         for _ in 0..2 {
@@ -126,11 +133,15 @@ impl<S: MechanicalSystem> MultiplierStep<S> {
 }
 
 impl<S: MechanicalSystem> Span<'_, S> {
-    /// Newton's iteration from the guess `impulse`, which becomes the solution. Its matrix is evaluated at every
+    /// Newton's iteration from the guess `impulse`, which becomes the solution. Returns the number of corrections. Its matrix is evaluated at every
     /// correction if it is to be `FRESH`, else once.
     #[inline(always)]
-    fn solve<const FRESH: bool>(&self, impulse: &mut S::PerConstraint<f64>) -> Result<(), StepError> {
-        let (mut residual, mut gram) = self.linearize(1, impulse)?;
+    fn solve<const FRESH: bool>(
+        &self,
+        impulse: &mut S::PerConstraint<f64>,
+        tally: &mut impl Tally,
+    ) -> Result<usize, StepError> {
+        let (mut residual, mut gram) = self.linearize(1, impulse, tally)?;
         let mut progress = Progress::default();
         let mut previous = S::PerConstraint::<f64>::from_fn(|_| 0.0);
         loop {
@@ -153,12 +164,12 @@ impl<S: MechanicalSystem> Span<'_, S> {
                 impulse[c] += residual[c];
             }
             match progress.record(length, is_round_off) {
-                Ok(true) => return Ok(()),
+                Ok(true) => return Ok(progress.corrections()),
                 Ok(false) => {}
                 Err(failure) => return Err(self.failed(failure.into(), impulse, gram.pivot_ratio())),
             }
             if FRESH {
-                (residual, gram) = self.linearize(progress.corrections() + 1, impulse)?;
+                (residual, gram) = self.linearize(progress.corrections() + 1, impulse, tally)?;
             } else {
                 residual = S::constraints(&self.mechanics.constants, self.end_time, &self.end(impulse));
             }
@@ -171,11 +182,17 @@ impl<S: MechanicalSystem> Span<'_, S> {
         &self,
         correction: usize,
         impulse: &S::PerConstraint<f64>,
+        tally: &mut impl Tally,
     ) -> Result<(S::PerConstraint<f64>, S::GramFactors), StepError> {
         let end = self.end(impulse);
         let (residual, jacobian) = S::constraint_derivatives(&self.mechanics.constants, self.end_time, &end);
         match self.mechanics.factor_gram(&jacobian, &self.directions) {
-            Ok(gram) => Ok((residual, gram)),
+            Ok(gram) => {
+                if gram.is_fallback() {
+                    tally.count_fallback();
+                }
+                Ok((residual, gram))
+            }
             Err(matrix) => Err(self.failed(IterationFailure::Singular { correction, matrix }, impulse, 0.0)),
         }
     }
@@ -194,9 +211,13 @@ impl<S: MechanicalSystem> Span<'_, S> {
 
     /// Newton's iteration without the history, and with a fresh matrix for every correction.
     #[cold]
-    fn solve_anew(&self, impulse: &mut S::PerConstraint<f64>) -> Result<(), StepError> {
+    fn solve_anew(
+        &self,
+        impulse: &mut S::PerConstraint<f64>,
+        tally: &mut impl Tally,
+    ) -> Result<usize, StepError> {
         *impulse = Array::from_fn(|_| 0.0);
-        self.solve::<true>(impulse)
+        self.solve::<true>(impulse, tally)
     }
 
     /// `q₁(ℓ) = q₀ + d_free − h A⁻¹ G₀ᵀ ℓ`.

@@ -145,6 +145,12 @@ where
         self.factors.pivot_ratio()
     }
 
+    /// Whether the pivoted dense solve has taken the place of the scene's own elimination.
+    #[inline(always)]
+    pub(crate) fn is_fallback(&self) -> bool {
+        self.factors.is_fallback()
+    }
+
     #[inline]
     fn apply_scale(&self, unknowns: &mut S::PerUnknown<f64>) {
         for (unknown, scale) in unknowns.as_mut().iter_mut().zip(self.scale.as_ref()) {
