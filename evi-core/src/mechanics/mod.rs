@@ -5,20 +5,25 @@
 //! but for its constraints (`FoldedStep`).
 
 mod constraints;
+mod coordinate_matrix;
 mod folded_step;
+mod legendre;
 mod momentum;
 mod observables;
 mod state;
 mod step_equations;
 
-pub(crate) use constraints::Directions;
+pub(crate) use constraints::{Directions, NOTHING};
+pub(crate) use coordinate_matrix::{CoordinateMatrix, Rows};
 pub(crate) use folded_step::FoldedStep;
+pub(crate) use legendre::ConstantLegendre;
 pub use momentum::{Acceleration, ProjectionError};
 pub(crate) use momentum::{Projected, relative};
 pub(crate) use observables::norm;
 pub use state::State;
 pub(crate) use step_equations::{DiscreteLagrangian, Slot, StepStart};
 
+use crate::array::Array;
 use crate::linear::Kkt;
 use crate::system::MechanicalSystem;
 
@@ -37,6 +42,19 @@ impl<S: MechanicalSystem> Mechanics<S> {
     /// Folds the parameters of `system` into the constants of its equations.
     pub fn new(system: &S) -> Self {
         Self { constants: S::constants(&system.parameters()) }
+    }
+
+    /// The mass matrix of a scene in which it is constant.
+    pub(crate) fn constant_mass(&self) -> Rows<S> {
+        let at_rest = Array::from_fn(|_| 0.0);
+        let (_, hessian) = S::lagrangian_derivatives(&self.constants, 0.0, &at_rest, &at_rest);
+        let mut mass = CoordinateMatrix::<S>::zero_rows();
+        for entry in S::STRUCTURE.hessian.vv {
+            let value = entry.value(self.constants.as_ref(), hessian.as_ref());
+            mass[entry.row][entry.col] = value;
+            mass[entry.col][entry.row] = value;
+        }
+        mass
     }
 
     /// The saddle-point matrix of mass matrix and constraints, `[M Gᵀ; G 0]`.
