@@ -58,11 +58,11 @@ const UNEQUAL: DoublePendulum = DoublePendulum { m1: 1.3, m2: 0.4, l1: 0.7, l2: 
 
 #[test]
 fn specialised_and_dense_path_agree_on_the_double_pendulum() {
-    // Round-off of 100 steps: 7 ε, 11 ε from horizontal, 7 ε measured.
+    // Round-off of 100 steps: 9 ε, 14 ε from horizontal, 20 ε measured.
     let unit = DoublePendulum::UNIT;
     check(unit, unit.at_angles(0.1, 0.1), 16.0);
     check(unit, unit.horizontal(), 32.0);
-    check(UNEQUAL, UNEQUAL.at_angles(1.0, -2.0), 16.0);
+    check(UNEQUAL, UNEQUAL.at_angles(1.0, -2.0), 32.0);
 }
 
 #[test]
@@ -133,8 +133,8 @@ fn statistics<F: Scheme<NearlyMassless>>(light: f64, scheme: F) -> Statistics {
 fn every_fallback_is_counted() {
     let evi = statistics(1e-13, Evi::midpoint(H));
     assert!(evi.corrections >= 2 * STEPS, "{evi:?}");
-    // A factorization for every correction, and one for the projection at the end of a step.
-    assert_eq!(evi.fallbacks, evi.corrections + STEPS);
+    // A factorization for every correction; the projection takes the inverse of the constant mass.
+    assert_eq!(evi.fallbacks, evi.corrections);
     // Four stages.
     assert_eq!(statistics(1e-13, Rk4::new(H)), Statistics { corrections: 0, fallbacks: 4 * STEPS });
 }
