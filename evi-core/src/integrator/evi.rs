@@ -94,6 +94,9 @@ pub struct EviStep<S: MechanicalSystem, F: Interpolant<S>, const K: usize> {
     legendre: Option<ConstantLegendre<S>>,
 }
 
+/// The unknowns `(d, Λ)` of the step equations.
+type Unknowns<S> = (<S as MechanicalSystem>::PerCoordinate<f64>, <S as MechanicalSystem>::PerConstraint<f64>);
+
 impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> OneStep<S> for EviStep<S, F, K> {
     fn h(&self) -> f64 {
         self.action.h()
@@ -179,7 +182,7 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
         p: &S::PerCoordinate<f64>,
         mut difference: S::PerCoordinate<f64>,
         tally: &mut impl Tally,
-    ) -> Result<(S::PerCoordinate<f64>, S::PerConstraint<f64>), StepError> {
+    ) -> Result<Unknowns<S>, StepError> {
         let (_, jacobian) = S::constraint_derivatives(&self.mechanics().constants, t, q);
         let start = StepStart { t, q, p, jacobian };
         let mut impulse = S::PerConstraint::<f64>::from_fn(|_| 0.0);
