@@ -76,7 +76,7 @@ impl<S: MechanicalSystem, const K: usize, F: Interpolant<S>> Scheme<S> for Evi<K
         let table = self.interpolant.table(&self.quadrature, h)?;
         let action = DiscreteLagrangian::new(mechanics, table, self.quadrature, h);
         // Where M or A is singular, the constraints are needed to determine the motion: the general step uses them.
-        let folded = if FoldedStep::<S>::EXISTS { FoldedStep::new(&action).ok() } else { None };
+        let folded = if FoldedStep::<S, F>::EXISTS { FoldedStep::new(&action).ok() } else { None };
         Ok(EviStep { action, folded: folded.map(MultiplierStep::new) })
     }
 }
@@ -85,7 +85,7 @@ impl<S: MechanicalSystem, const K: usize, F: Interpolant<S>> Scheme<S> for Evi<K
 pub struct EviStep<S: MechanicalSystem, F: Interpolant<S>, const K: usize> {
     action: DiscreteLagrangian<S, F::Table<K>, K>,
     /// The step of a quadratic Lagrangian.
-    folded: Option<MultiplierStep<S>>,
+    folded: Option<MultiplierStep<S, FoldedStep<S, F>>>,
 }
 
 impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> OneStep<S> for EviStep<S, F, K> {
@@ -99,10 +99,10 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> OneStep<S> for EviS
 
     #[inline]
     fn advance(&mut self, state: &mut State<S>) -> Result<(), StepError> {
-        if FoldedStep::<S>::EXISTS
+        if FoldedStep::<S, F>::EXISTS
             && let Some(folded) = &mut self.folded
         {
-            return folded.advance(&self.action.mechanics, F::IS_STRAIGHT, self.action.h(), state);
+            return folded.advance(&self.action.mechanics, self.action.h(), state);
         }
         let h = self.action.h();
         let start_of_curve = Array::from_fn(|i| h * state.v[i]);

@@ -1,40 +1,43 @@
-//! The step of a folded scene: Newton's iteration on the multipliers alone.
+//! A kick, a drift and a kick with constraints: Newton's iteration on the multipliers alone.
 //!
-//! In: a [`FoldedStep`], whose end point is affine in the impulse `ℓ = Λ/h` of the constraint force. Out: the `ℓ` for which
-//! `φ(q₁(ℓ)) = 0`, and the state there. The matrix `h G₁ A⁻¹ G₀ᵀ` is evaluated and factored once per step, at an impulse that
+//! In: a [`KickDriftKick`], whose end point is affine in the impulse `ℓ = Λ/h` of the constraint force. Out: the `ℓ` for which
+//! `φ(q₁(ℓ)) = 0`, and the state there. The matrix `G₁ D G₀ᵀ` is evaluated and factored once per step, at an impulse that
 //! is extrapolated from the previous steps; each further correction costs one evaluation of the constraints.
+
+use core::marker::PhantomData;
 
 use super::{IterationFailure, StepError};
 use crate::array::Array;
 use crate::linear::{Factorization, largest_magnitude};
-use crate::mechanics::{Directions, FoldedStep, Mechanics, ProjectionError, State};
+use crate::mechanics::{Directions, KickDriftKick, Mechanics, ProjectionError, State};
 use crate::newton::{self, NotConverged, Progress};
 use crate::system::MechanicalSystem;
 
-/// A folded step with the impulses that it has needed so far.
-pub(crate) struct MultiplierStep<S: MechanicalSystem> {
-    folded: FoldedStep<S>,
+/// A step without its constraint forces, with the impulses that it has needed so far.
+pub(crate) struct MultiplierStep<S: MechanicalSystem, F> {
+    free: F,
     /// Impulses of the last three steps, newest first: the first guess of the next. They affect the number of
     /// corrections and the last bits of a state, nothing else.
     previous: [S::PerConstraint<f64>; 3],
 }
 
 /// The motion of one step as a function of the impulse.
-struct Span<'a, S: MechanicalSystem> {
+struct Span<'a, S: MechanicalSystem, F> {
     mechanics: &'a Mechanics<S>,
     start_time: f64,
     end_time: f64,
     /// `q₀ + d` without constraint forces.
     free_end: S::PerCoordinate<f64>,
-    /// `h A⁻¹ G₀ᵀ`.
+    /// `D G₀ᵀ`.
     directions: Directions<S>,
     /// `1 / Σ |G_ci| rᵢ`, where `rᵢ` adds up the magnitudes of the terms that `q₁` is a sum of: what `φ` is compared with.
     inverse_scale: S::PerConstraint<f64>,
+    free: PhantomData<F>,
 }
 
-impl<S: MechanicalSystem> MultiplierStep<S> {
-    pub(crate) fn new(folded: FoldedStep<S>) -> Self {
-        Self { folded, previous: core::array::from_fn(|_| Array::from_fn(|_| 0.0)) }
+impl<S: MechanicalSystem, F: KickDriftKick<S>> MultiplierStep<S, F> {
+    pub(crate) fn new(free: F) -> Self {
+        Self { free, previous: core::array::from_fn(|_| Array::from_fn(|_| 0.0)) }
     }
 
     /// Overwrites `state` with the state one step of size `h` later.
@@ -42,22 +45,22 @@ impl<S: MechanicalSystem> MultiplierStep<S> {
     pub(crate) fn advance(
         &mut self,
         mechanics: &Mechanics<S>,
-        is_straight: bool,
         h: f64,
         state: &mut State<S>,
     ) -> Result<(), StepError> {
         let t = state.t + h;
-        let mut p = self.folded.kicked_at_start(is_straight, &state.q, &state.p);
-        let free_difference = self.folded.drift(&p);
+        let mut p = self.free.kicked_at_start(mechanics, state.t, &state.q, &state.p);
+        let free_difference = self.free.drift(&p);
         let mut q = Array::from_fn(|i| state.q[i] + free_difference[i]);
         let mut impulse = S::PerConstraint::<f64>::from_fn(|_| 0.0);
         if S::N_CONSTRAINTS > 0 {
             let (_, jacobian) = S::constraint_derivatives(&mechanics.constants, state.t, &state.q);
-            let directions = mechanics.constraint_directions(&jacobian, |x| self.folded.drift(x));
+            let directions = mechanics.constraint_directions(&jacobian, |x| self.free.drift(x));
             impulse = self.extrapolated_impulse();
             let mut reach = S::PerCoordinate::<f64>::from_fn(|i| state.q[i].abs() + free_difference[i].abs());
-            add_magnitudes::<S>(&directions, &impulse, &mut reach);
-            let span = Span {
+            add_magnitudes::<S>(F::DRIFT_IS_UNCOUPLED, &directions, &impulse, &mut reach);
+            let span = Span::<S, F> {
+                free: PhantomData,
                 inverse_scale: mechanics.inverse_constraint_scale(&jacobian, &reach),
                 directions,
                 mechanics,
@@ -71,8 +74,8 @@ impl<S: MechanicalSystem> MultiplierStep<S> {
             q = span.end(&impulse);
             mechanics.subtract_constraint_force(jacobian.as_ref(), impulse.as_ref(), p.as_mut());
         }
-        p = self.folded.kicked_at_end(is_straight, &q, &p);
-        let mut v = self.folded.velocity(&p);
+        p = self.free.kicked_at_end(mechanics, t, &q, &p);
+        let mut v = self.free.velocity(&p);
         if S::N_CONSTRAINTS > 0 {
             self.project(mechanics, t, &q, &mut v, &mut p)?;
         }
@@ -106,7 +109,7 @@ impl<S: MechanicalSystem> MultiplierStep<S> {
         p: &mut S::PerCoordinate<f64>,
     ) -> Result<(), StepError> {
         let (_, jacobian) = S::constraint_derivatives(&mechanics.constants, t, q);
-        let directions = mechanics.constraint_directions(&jacobian, |x| self.folded.inverse_mass(x));
+        let directions = mechanics.constraint_directions(&jacobian, |x| self.free.inverse_mass(x));
         let gram = mechanics
             .factor_gram(&jacobian, &directions)
             .map_err(|matrix| StepError::Projection { t, cause: ProjectionError::Singular(matrix) })?;
@@ -115,7 +118,7 @@ impl<S: MechanicalSystem> MultiplierStep<S> {
         for _ in 0..2 {
             let mut part = mechanics.constraint_rate(jacobian.as_ref(), v);
             gram.solve(&mut part);
-            subtract::<S>(&directions, &part, v);
+            subtract::<S>(S::STRUCTURE.is_uncoupled(), &directions, &part, v);
             for c in 0..S::N_CONSTRAINTS {
                 impulse[c] += part[c];
             }
@@ -125,7 +128,7 @@ impl<S: MechanicalSystem> MultiplierStep<S> {
     }
 }
 
-impl<S: MechanicalSystem> Span<'_, S> {
+impl<S: MechanicalSystem, F: KickDriftKick<S>> Span<'_, S, F> {
     /// Newton's iteration from the guess `impulse`, which becomes the solution. Its matrix is evaluated at every
     /// correction if it is to be `FRESH`, else once.
     #[inline(always)]
@@ -165,16 +168,16 @@ impl<S: MechanicalSystem> Span<'_, S> {
         }
     }
 
-    /// `φ(q₁(ℓ))`, and the factors of its derivative, `−h G₁ A⁻¹ G₀ᵀ`, but for the sign.
+    /// `φ(q₁(ℓ))`, and the factors of its derivative, `−G₁ D G₀ᵀ`, but for the sign.
     #[inline]
     fn linearize(
         &self,
         correction: usize,
         impulse: &S::PerConstraint<f64>,
-    ) -> Result<(S::PerConstraint<f64>, S::GramFactors), StepError> {
+    ) -> Result<(S::PerConstraint<f64>, F::DriftGram), StepError> {
         let end = self.end(impulse);
         let (residual, jacobian) = S::constraint_derivatives(&self.mechanics.constants, self.end_time, &end);
-        match self.mechanics.factor_gram(&jacobian, &self.directions) {
+        match self.mechanics.factor_gram_with(F::DRIFT_IS_UNCOUPLED, &jacobian, &self.directions) {
             Ok(gram) => Ok((residual, gram)),
             Err(matrix) => Err(self.failed(IterationFailure::Singular { correction, matrix }, impulse, 0.0)),
         }
@@ -199,11 +202,11 @@ impl<S: MechanicalSystem> Span<'_, S> {
         self.solve::<true>(impulse)
     }
 
-    /// `q₁(ℓ) = q₀ + d_free − h A⁻¹ G₀ᵀ ℓ`.
+    /// `q₁(ℓ) = q₀ + d_free − D G₀ᵀ ℓ`.
     #[inline]
     fn end(&self, impulse: &S::PerConstraint<f64>) -> S::PerCoordinate<f64> {
         let mut end = self.free_end.clone();
-        subtract::<S>(&self.directions, impulse, &mut end);
+        subtract::<S>(F::DRIFT_IS_UNCOUPLED, &self.directions, impulse, &mut end);
         end
     }
 }
@@ -211,11 +214,12 @@ impl<S: MechanicalSystem> Span<'_, S> {
 /// Subtracts `Σ directions[c] y[c]` from `x`.
 #[inline]
 fn subtract<S: MechanicalSystem>(
+    uncoupled: bool,
     directions: &Directions<S>,
     y: &S::PerConstraint<f64>,
     x: &mut S::PerCoordinate<f64>,
 ) {
-    if S::STRUCTURE.is_uncoupled() {
+    if uncoupled {
         for entry in S::STRUCTURE.jacobian.q {
             x[entry.col] -= directions[entry.row][entry.col] * y[entry.row];
         }
@@ -231,11 +235,12 @@ fn subtract<S: MechanicalSystem>(
 /// Adds `Σ |directions[c] y[c]|` to `x`.
 #[inline]
 fn add_magnitudes<S: MechanicalSystem>(
+    uncoupled: bool,
     directions: &Directions<S>,
     y: &S::PerConstraint<f64>,
     x: &mut S::PerCoordinate<f64>,
 ) {
-    if S::STRUCTURE.is_uncoupled() {
+    if uncoupled {
         for entry in S::STRUCTURE.jacobian.q {
             x[entry.col] += (directions[entry.row][entry.col] * y[entry.row]).abs();
         }

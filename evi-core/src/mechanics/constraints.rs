@@ -41,17 +41,31 @@ impl<S: MechanicalSystem> Mechanics<S> {
         Array::from_fn(|c| matrix(&gradients[c]))
     }
 
-    /// Factors `G D`, where the rows of `directions` are the columns of `D`.
+    /// Factors `G D`, where the rows of `directions` are the columns of `D`, by the scene's own elimination.
     #[inline]
     pub(crate) fn factor_gram(
         &self,
         jacobian: &S::PerJacobianEntry<f64>,
         directions: &Directions<S>,
     ) -> Result<S::GramFactors, SingularMatrix> {
+        self.factor_gram_with(S::STRUCTURE.is_uncoupled(), jacobian, directions)
+    }
+
+    /// Factors `G D`; the columns of `D` have the pattern of `Gᵀ` if they are `uncoupled`, and are full otherwise.
+    #[inline]
+    pub(crate) fn factor_gram_with<F>(
+        &self,
+        uncoupled: bool,
+        jacobian: &S::PerJacobianEntry<f64>,
+        directions: &Directions<S>,
+    ) -> Result<F, SingularMatrix>
+    where
+        F: Factorization<S::PerConstraint<f64>, S::PerConstraint<S::PerConstraint<f64>>>,
+    {
         let mut gram: S::PerConstraint<S::PerConstraint<f64>> = Array::from_fn(|_| Array::from_fn(|_| 0.0));
         for entry in S::STRUCTURE.jacobian.q {
             let slope = entry.value(self.constants.as_ref(), jacobian.as_ref());
-            if S::STRUCTURE.is_uncoupled() {
+            if uncoupled {
                 for other in S::STRUCTURE.jacobian.q {
                     if other.col == entry.col {
                         gram[entry.row][other.row] += slope * directions[other.row][other.col];
@@ -63,7 +77,7 @@ impl<S: MechanicalSystem> Mechanics<S> {
                 }
             }
         }
-        S::GramFactors::factor(&gram)
+        F::factor(&gram)
     }
 
     /// `1 / Σᵢ |G_ci| rᵢ` for a reach `rᵢ ≥ 0` of every coordinate; 0 for a constraint within reach of none.
@@ -106,5 +120,37 @@ impl<S: MechanicalSystem> Mechanics<S> {
             rate[entry.row] += entry.value(self.constants.as_ref(), jacobian) * v[entry.col];
         }
         rate
+    }
+
+    /// Calls `add(row, col, value)` for every entry of `Σ μ φ_qq`, the second derivative of `μᵀφ`.
+    pub(crate) fn for_each_constraint_curvature(
+        &self,
+        t: f64,
+        q: &S::PerCoordinate<f64>,
+        multipliers: &S::PerConstraint<f64>,
+        mut add: impl FnMut(usize, usize, f64),
+    ) {
+        if S::N_CONSTRAINTS == 0 {
+            return;
+        }
+        let curvature = |direction| S::constraint_curvature(&self.constants, t, q, &direction);
+        let unit = |i: usize, j: usize| if i == j { 1.0 } else { 0.0 };
+        let at_rest = curvature(Array::from_fn(|_| 0.0));
+        let along: Directions<S> = {
+            let columns = S::PerCoordinate::<S::PerConstraint<f64>>::from_fn(|col| {
+                curvature(Array::from_fn(|i| unit(i, col)))
+            });
+            Array::from_fn(|c| Array::from_fn(|col| columns[col][c]))
+        };
+        for row in 0..S::N_COORDINATES {
+            for col in 0..S::N_COORDINATES {
+                // γ is a quadratic polynomial of the velocity: γ(a + b) − γ(a) − γ(b) + γ(0) leaves twice its
+                // bilinear form, without the terms of time. Constraint by constraint, so that small whole numbers
+                // cancel exactly, and in an order that rows and columns may exchange.
+                let along_both = curvature(Array::from_fn(|i| unit(i, row) + unit(i, col)));
+                let bilinear = |c: usize| along_both[c] - (along[c][row] + along[c][col]) + at_rest[c];
+                add(row, col, (0..S::N_CONSTRAINTS).map(|c| 0.5 * multipliers[c] * bilinear(c)).sum());
+            }
+        }
     }
 }

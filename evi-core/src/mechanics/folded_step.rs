@@ -12,17 +12,17 @@
 //! the number of nodes, and positions are eliminated for good. Each of the three maps is symplectic whatever the rounding
 //! of its matrix, so that rounded coefficients cause no drift.
 
-use super::{DiscreteLagrangian, Slot};
+use core::marker::PhantomData;
+
+use super::matrix::{Matrix, inverse, times, zero_matrix};
+use super::{DiscreteLagrangian, KickDriftKick, Mechanics, Slot};
 use crate::array::Array;
-use crate::linear::{Factorization, SingularMatrix};
-use crate::scheme::InterpolationTable;
+use crate::linear::SingularMatrix;
+use crate::scheme::Interpolant;
 use crate::system::{LagrangianGradient, MechanicalSystem};
 
-/// A matrix over the coordinates, by rows.
-type Matrix<S> = <S as MechanicalSystem>::PerCoordinate<<S as MechanicalSystem>::PerCoordinate<f64>>;
-
-/// A step without its constraint forces.
-pub(crate) struct FoldedStep<S: MechanicalSystem> {
+/// A step without its constraint forces, on the curves of `F`.
+pub(crate) struct FoldedStep<S: MechanicalSystem, F> {
     /// `q₀ ↦ −(B q₀ + a)/h`.
     start_kick: Kick<S>,
     /// `q₁ ↦ (E q₁ + c)/h`.
@@ -33,6 +33,7 @@ pub(crate) struct FoldedStep<S: MechanicalSystem> {
     inverse_mass: Matrix<S>,
     /// `∂L/∂v` at `v = 0`.
     momentum_at_rest: S::PerCoordinate<f64>,
+    curves: PhantomData<F>,
 }
 
 /// An affine force times a time.
@@ -41,7 +42,7 @@ struct Kick<S: MechanicalSystem> {
     constant: S::PerCoordinate<f64>,
 }
 
-impl<S: MechanicalSystem> FoldedStep<S> {
+impl<S: MechanicalSystem, F: Interpolant<S>> FoldedStep<S, F> {
     /// Whether the steps of the scene can be folded.
     pub(crate) const EXISTS: bool = S::STRUCTURE.hessian.is_constant()
         && S::STRUCTURE.hessian.vq.is_empty()
@@ -51,8 +52,8 @@ impl<S: MechanicalSystem> FoldedStep<S> {
     ///
     /// # Errors
     /// [`SingularMatrix`] if `M` or `A` is singular: then the constraints are needed to determine the motion.
-    pub(crate) fn new<T: InterpolationTable, const K: usize>(
-        action: &DiscreteLagrangian<S, T, K>,
+    pub(crate) fn new<const K: usize>(
+        action: &DiscreteLagrangian<S, F::Table<K>, K>,
     ) -> Result<Self, SingularMatrix> {
         let h = action.h();
         let constants = &action.mechanics.constants;
@@ -96,50 +97,54 @@ impl<S: MechanicalSystem> FoldedStep<S> {
             drift: Array::from_fn(|row| Array::from_fn(|col| h * response[row][col])),
             inverse_mass: inverse::<S>(&mass)?,
             momentum_at_rest: momentum,
+            curves: PhantomData,
         })
     }
+}
 
-    /// `p½` without constraint forces.
+impl<S: MechanicalSystem, F: Interpolant<S>> KickDriftKick<S> for FoldedStep<S, F> {
+    const DRIFT_IS_UNCOUPLED: bool = S::STRUCTURE.is_uncoupled();
+
+    type DriftGram = S::GramFactors;
+
     #[inline]
-    pub(crate) fn kicked_at_start(
+    fn kicked_at_start(
         &self,
-        is_straight: bool,
+        _mechanics: &Mechanics<S>,
+        _t: f64,
         q: &S::PerCoordinate<f64>,
         p: &S::PerCoordinate<f64>,
     ) -> S::PerCoordinate<f64> {
-        self.start_kick.apply(is_straight, q, p)
+        self.start_kick.apply(F::IS_STRAIGHT, q, p)
     }
 
-    /// `p⁻` from `p½`.
     #[inline]
-    pub(crate) fn kicked_at_end(
+    fn kicked_at_end(
         &self,
-        is_straight: bool,
+        _mechanics: &Mechanics<S>,
+        _t: f64,
         q: &S::PerCoordinate<f64>,
         p: &S::PerCoordinate<f64>,
     ) -> S::PerCoordinate<f64> {
-        self.end_kick.apply(is_straight, q, p)
+        self.end_kick.apply(F::IS_STRAIGHT, q, p)
     }
 
-    /// `h A⁻¹ p`: the difference of positions that the momentum `p½` makes.
     #[inline]
-    pub(crate) fn drift(&self, p: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
-        times::<S>(&self.drift, |i| p[i])
+    fn drift(&self, p: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
+        times::<S>(S::STRUCTURE.is_uncoupled(), &self.drift, |i| p[i])
     }
 
-    /// `M⁻¹ p`.
     #[inline]
-    pub(crate) fn inverse_mass(&self, p: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
-        times::<S>(&self.inverse_mass, |i| p[i])
+    fn inverse_mass(&self, p: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
+        times::<S>(S::STRUCTURE.is_uncoupled(), &self.inverse_mass, |i| p[i])
     }
 
-    /// The velocity of the momentum `p`.
     #[inline]
-    pub(crate) fn velocity(&self, p: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
+    fn velocity(&self, p: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
         if S::STRUCTURE.momentum_vanishes_at_rest {
             return self.inverse_mass(p);
         }
-        times::<S>(&self.inverse_mass, |i| p[i] - self.momentum_at_rest[i])
+        times::<S>(S::STRUCTURE.is_uncoupled(), &self.inverse_mass, |i| p[i] - self.momentum_at_rest[i])
     }
 }
 
@@ -159,34 +164,7 @@ impl<S: MechanicalSystem> Kick<S> {
         if is_straight && S::STRUCTURE.hessian.qq.is_empty() {
             return Array::from_fn(|i| p[i] + self.constant[i]);
         }
-        let linear = times::<S>(&self.linear, |i| q[i]);
+        let linear = times::<S>(S::STRUCTURE.is_uncoupled(), &self.linear, |i| q[i]);
         Array::from_fn(|i| p[i] + (linear[i] + self.constant[i]))
     }
-}
-
-fn zero_matrix<S: MechanicalSystem>() -> Matrix<S> {
-    Array::from_fn(|_| Array::from_fn(|_| 0.0))
-}
-
-/// `matrix · x`, elementwise where the scene couples no coordinates.
-#[inline]
-fn times<S: MechanicalSystem>(matrix: &Matrix<S>, x: impl Fn(usize) -> f64) -> S::PerCoordinate<f64> {
-    Array::from_fn(|i| {
-        if S::STRUCTURE.is_uncoupled() {
-            matrix[i][i] * x(i)
-        } else {
-            (0..S::N_COORDINATES).map(|k| matrix[i][k] * x(k)).sum()
-        }
-    })
-}
-
-fn inverse<S: MechanicalSystem>(matrix: &Matrix<S>) -> Result<Matrix<S>, SingularMatrix> {
-    let factors = S::MassFactors::factor(matrix)?;
-    // Column by column, kept as rows: the matrix is symmetric, and made so to the last bit.
-    let columns: Matrix<S> = Array::from_fn(|col| {
-        let mut column = S::PerCoordinate::<f64>::from_fn(|row| if row == col { 1.0 } else { 0.0 });
-        factors.solve(&mut column);
-        column
-    });
-    Ok(Array::from_fn(|row| Array::from_fn(|col| 0.5 * (columns[col][row] + columns[row][col]))))
 }

@@ -6,6 +6,8 @@
 
 mod constraints;
 mod folded_step;
+mod kick_drift_kick;
+mod matrix;
 mod momentum;
 mod observables;
 mod state;
@@ -13,6 +15,7 @@ mod step_equations;
 
 pub(crate) use constraints::Directions;
 pub(crate) use folded_step::FoldedStep;
+pub(crate) use kick_drift_kick::KickDriftKick;
 pub use momentum::{Acceleration, ProjectionError};
 pub(crate) use momentum::{Projected, relative};
 pub(crate) use observables::norm;
