@@ -69,7 +69,7 @@ pub mod __private;
 pub mod prelude {
     pub use crate::integrator::{Evi, OneStep, Run, Scheme, Simulation, StartError, StepError};
     pub use crate::mechanics::State;
-    pub use crate::scheme::{Frequency, Quadrature, SchemeError};
+    pub use crate::scheme::{Frequency, Mollifier, Quadrature, SchemeError};
     pub use crate::system::MechanicalSystem;
     #[cfg(feature = "derive")]
     pub use evi_macros::MechanicalSystem;

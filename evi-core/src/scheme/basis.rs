@@ -17,7 +17,7 @@ use crate::scheme::{Frequency, Quadrature, SchemeError};
 use crate::system::MechanicalSystem;
 
 /// Below this |sin u| an interpolant amplifies round-off of its end points a thousandfold: refused as resonant.
-const SMALLEST_SINE: f64 = 1e-3;
+pub(super) const SMALLEST_SINE: f64 = 1e-3;
 /// Below this kinetic coefficient (1 at u = 0) the step equation loses three digits of the end point: refused.
 const SMALLEST_KINETIC_COEFFICIENT: f64 = 1e-3;
 /// Below this |u| the curve is straight to the last bit: its deviation is u²/8.
@@ -136,6 +136,21 @@ pub trait Interpolant<S: MechanicalSystem> {
     /// The coefficients at `K` nodes.
     type Table<const K: usize>: InterpolationTable;
 
+    /// The frequency of a coordinate's curve.
+    fn frequency(&self, coordinate: usize) -> Frequency;
+
+    /// The rule that this family uses in the place of `quadrature`: the same nodes, weights of its own where it has such.
+    ///
+    /// # Errors
+    /// [`SchemeError`] for nodes that the family has no weights for.
+    fn rule<const K: usize>(
+        &self,
+        quadrature: &Quadrature<K>,
+        _h: f64,
+    ) -> Result<Quadrature<K>, SchemeError> {
+        Ok(*quadrature)
+    }
+
     /// The coefficients at the nodes of `quadrature` for steps of size `h`.
     ///
     /// # Errors
@@ -162,6 +177,10 @@ impl<S: MechanicalSystem> Interpolant<S> for Linear {
         _h: f64,
     ) -> Result<LinearTable<K>, SchemeError> {
         Ok(LinearTable { offsets: *quadrature.offsets() })
+    }
+
+    fn frequency(&self, _coordinate: usize) -> Frequency {
+        Frequency::ZERO
     }
 }
 
@@ -192,6 +211,10 @@ impl<S: MechanicalSystem> Interpolant<S> for Frequency {
         h: f64,
     ) -> Result<UniformTable<K>, SchemeError> {
         Ok(UniformTable { nodes: checked_coefficients(*self, 0, quadrature, h)? })
+    }
+
+    fn frequency(&self, _coordinate: usize) -> Frequency {
+        *self
     }
 }
 
@@ -225,6 +248,10 @@ where
             coordinates[i] = checked_coefficients(self[i], i, quadrature, h)?;
         }
         Ok(CoordinateTable { coordinates })
+    }
+
+    fn frequency(&self, coordinate: usize) -> Frequency {
+        self[coordinate]
     }
 }
 
