@@ -6,7 +6,9 @@ use crate::array::Array;
 use crate::linear::{constraint_index, largest_magnitude};
 use crate::mechanics::{DiscreteLagrangian, FoldedStep, Mechanics, Projected, State, StepStart, relative};
 use crate::newton;
-use crate::scheme::{Frequency, Interpolant, Linear, Quadrature, SchemeError, checked_step_size};
+use crate::scheme::{
+    About, Fitted, Frequency, Interpolant, Linear, Quadrature, SchemeError, checked_step_size, growth_rate,
+};
 use crate::system::MechanicalSystem;
 
 /// An exponential variational integrator with `K` intermediate points.
@@ -33,12 +35,13 @@ pub struct Evi<const K: usize, F = Linear> {
     quadrature: Quadrature<K>,
     h: f64,
     interpolant: F,
+    allows_soft_modes: bool,
 }
 
 impl Evi<1> {
     /// The implicit midpoint member, `S = 1`.
     pub const fn midpoint(h: f64) -> Self {
-        Self { quadrature: Quadrature::midpoint(), h, interpolant: Linear }
+        Self::new(Quadrature::midpoint(), h)
     }
 }
 
@@ -53,19 +56,119 @@ impl<const K: usize> Evi<K> {
     /// The member on the nodes of `quadrature`, with linear interpolation, for steps of size `h` (units of time;
     /// negative steps go back in time).
     pub const fn new(quadrature: Quadrature<K>, h: f64) -> Self {
-        Self { quadrature, h, interpolant: Linear }
+        Self { quadrature, h, interpolant: Linear, allows_soft_modes: false }
     }
 
     /// Interpolates every coordinate with the same frequency; for scenes in which all coordinates oscillate about 0.
     pub fn frequency(self, frequency: impl Into<Frequency>) -> Evi<K, Frequency> {
-        Evi { quadrature: self.quadrature, h: self.h, interpolant: frequency.into() }
+        self.on(frequency.into())
     }
 
     /// Interpolates coordinate `i` with `frequencies[i]`, [`Frequency::ZERO`] on a straight line. Coordinates of one body should
     /// share theirs.
     pub fn frequencies<const N: usize>(self, frequencies: [Frequency; N]) -> Evi<K, [Frequency; N]> {
-        Evi { quadrature: self.quadrature, h: self.h, interpolant: frequencies }
+        self.on(frequencies)
     }
+}
+
+impl Evi<2> {
+    /// The member on the trapezoidal rule, `S = 2`; the impulse method with [`stiffness`](Self::stiffness).
+    pub fn trapezoid(h: f64) -> Self {
+        Self::new(Quadrature::uniform(), h)
+    }
+}
+
+impl Evi<3, Frequency> {
+    /// Weights fitted to the frequency, in the place of those of the rule: an oscillator of this frequency is reproduced to
+    /// round-off in position, momentum and energy. See [`Fitted`].
+    ///
+    /// ```
+    /// use evi_core::prelude::*;
+    /// let scheme = Evi::simpson(0.5).frequency(2.0).fitted();
+    /// # let _ = scheme;
+    /// ```
+    pub fn fitted(self) -> Evi<3, Fitted> {
+        let frequency = self.interpolant;
+        self.on(Fitted { frequency })
+    }
+}
+
+impl<const K: usize> Evi<K, Frequency> {
+    /// Interpolates `q − reference` in the place of `q`; see [`About`].
+    ///
+    /// ```
+    /// use evi_core::prelude::*;
+    /// let scheme = Evi::simpson(0.01).frequency(3.13).about([0.0, -1.0, 0.0, -2.0]);
+    /// # let _ = scheme;
+    /// ```
+    pub fn about<const N: usize>(self, reference: [f64; N]) -> Evi<K, About<Frequency, N>> {
+        self.referred_to(reference)
+    }
+}
+
+impl<const K: usize, const N: usize> Evi<K, [Frequency; N]> {
+    /// Interpolates `q − reference` in the place of `q`; see [`About`].
+    pub fn about(self, reference: [f64; N]) -> Evi<K, About<[Frequency; N], N>> {
+        self.referred_to(reference)
+    }
+}
+
+impl Evi<3, Fitted> {
+    /// Interpolates `q − reference` in the place of `q`; see [`About`].
+    pub fn about<const N: usize>(self, reference: [f64; N]) -> Evi<3, About<Fitted, N>> {
+        self.referred_to(reference)
+    }
+}
+
+impl<const K: usize, F> Evi<K, F> {
+    /// Takes a frequency also for coordinates that nothing holds, whose motions then grow ([`growth_rate`] tells how fast): to
+    /// study that growth.
+    pub fn allow_soft_modes(self) -> Self {
+        Self { allows_soft_modes: true, ..self }
+    }
+
+    /// The rule whose nodes sample the Lagrangian.
+    pub(super) const fn quadrature(&self) -> &Quadrature<K> {
+        &self.quadrature
+    }
+
+    /// The step size.
+    pub(super) const fn step(&self) -> f64 {
+        self.h
+    }
+
+    fn on<G>(self, interpolant: G) -> Evi<K, G> {
+        let Self { quadrature, h, allows_soft_modes, .. } = self;
+        Evi { quadrature, h, interpolant, allows_soft_modes }
+    }
+
+    fn referred_to<const N: usize>(self, reference: [f64; N]) -> Evi<K, About<F, N>>
+    where
+        F: Clone,
+    {
+        let interpolant = self.interpolant.clone();
+        self.on(About { interpolant, reference })
+    }
+}
+
+/// Refuses a frequency of a coordinate that neither `L` nor a constraint depends on, where the rule makes it grow.
+fn check_soft_coordinates<S: MechanicalSystem, const K: usize>(
+    interpolant: &impl Interpolant<S>,
+    rule: &Quadrature<K>,
+    h: f64,
+) -> Result<(), SchemeError> {
+    for coordinate in 0..S::N_COORDINATES {
+        let frequency = interpolant.frequency(coordinate);
+        // The frequency itself is judged with the table.
+        if S::STRUCTURE.is_free(coordinate) && frequency.value() != 0.0 {
+            let growth_rate = growth_rate(frequency, rule, h, 0.0);
+            if growth_rate > 0.0 {
+                let (coordinate, frequency) = (S::COORDINATES[coordinate], frequency.value());
+                return Err(SchemeError::SoftCoordinate { coordinate, frequency, growth_rate });
+            }
+        }
+    }
+    Ok(())
 }
 
 impl<S: MechanicalSystem, const K: usize, F: Interpolant<S>> Scheme<S> for Evi<K, F> {
@@ -73,8 +176,12 @@ impl<S: MechanicalSystem, const K: usize, F: Interpolant<S>> Scheme<S> for Evi<K
 
     fn prepare(&self, mechanics: Mechanics<S>) -> Result<Self::Step, SchemeError> {
         let h = checked_step_size(self.h)?;
-        let table = self.interpolant.table(&self.quadrature, h)?;
-        let action = DiscreteLagrangian::new(mechanics, table, self.quadrature, h);
+        let quadrature = self.interpolant.rule(&self.quadrature, h)?;
+        let table = self.interpolant.table(&quadrature, h)?;
+        if !self.allows_soft_modes {
+            check_soft_coordinates::<S, K>(&self.interpolant, &quadrature, h)?;
+        }
+        let action = DiscreteLagrangian::new(mechanics, table, quadrature, h);
         // Where M or A is singular, the constraints are needed to determine the motion: the general step uses them.
         let folded = if FoldedStep::<S, F>::EXISTS { FoldedStep::new(&action).ok() } else { None };
         Ok(EviStep { action, folded: folded.map(MultiplierStep::new) })

@@ -5,6 +5,7 @@
 //! a [`Run`] is a simulation at a state.
 
 mod evi;
+mod matrix_evi;
 mod multipliers;
 mod run;
 mod simulation;
@@ -12,6 +13,9 @@ mod simulation;
 mod trajectory;
 
 pub use evi::{Evi, EviStep};
+pub use matrix_evi::{
+    LinearisedAlong, LinearisedAt, MatrixEvi, MatrixEviStep, QuadraticModel, StepMode, Stiffness,
+};
 pub use run::Run;
 #[cfg(feature = "generic")]
 pub(crate) use run::steps_between;

@@ -1,0 +1,130 @@
+//! The impulse step: the exact flow of a quadratic part between two kicks of the rest of the potential.
+//!
+//! On the trapezoidal rule the action of a step is that of the exact flow less `½h (U(q₀) + U(q₁))`, and the step is
+//!
+//! ```text
+//! p½ = p₀ + T (q₀ − q_ref) − ½h U'(q₀)      q₁ = q₀ + D p½      p⁻ = p½ + T (q₁ − q_ref) − ½h U'(q₁)
+//! T = −M W tan ½hW                          D = sin(hW) W⁻¹ M⁻¹
+//! ```
+//!
+//! with `W² = M⁻¹ Ω` (Deuflhard, ZAMP 30 (1979) 177; Hairer, Lubich, Wanner, Geometric Numerical Integration, sec. XIII.1): explicit but for
+//! the constraints, symplectic, of order 2, and exact where `U = 0`.
+
+use super::matrix::{Matrix, add_transposed, inverse, times};
+use super::{KickDriftKick, Mechanics, QuadraticPart, StepModes};
+use crate::array::Array;
+use crate::linear::{Pivoted, SingularMatrix};
+use crate::scheme::Mollifier;
+use crate::system::{LagrangianGradient, MechanicalSystem};
+
+/// An impulse step without its constraint forces.
+pub(crate) struct ImpulseStep<S: MechanicalSystem> {
+    part: QuadraticPart<S>,
+    half_h: f64,
+    /// `T`.
+    kick: Matrix<S>,
+    /// `D`.
+    drift: Matrix<S>,
+    /// `φ(hW)`, where positions are filtered.
+    filter: Option<Matrix<S>>,
+    /// `M⁻¹`.
+    inverse_mass: Matrix<S>,
+    /// `∂L/∂v` at `v = 0`.
+    momentum_at_rest: S::PerCoordinate<f64>,
+}
+
+impl<S: MechanicalSystem> ImpulseStep<S> {
+    /// The step of size `h` for a scene whose mass matrix is constant.
+    ///
+    /// # Errors
+    /// [`SingularMatrix`] for a singular mass matrix.
+    pub(crate) fn new(
+        mechanics: &Mechanics<S>,
+        part: QuadraticPart<S>,
+        StepModes { modes, flows }: &StepModes<S>,
+        mollifier: Option<Mollifier>,
+        h: f64,
+    ) -> Result<Self, SingularMatrix> {
+        let at_rest = Array::from_fn(|_| 0.0);
+        let LagrangianGradient { momentum, .. } =
+            S::lagrangian_gradient(&mechanics.constants, 0.0, &part.reference, &at_rest);
+        Ok(Self {
+            half_h: 0.5 * h,
+            kick: modes.to_momenta(|k| flows[k].kick),
+            drift: modes.to_positions(|k| flows[k].drift),
+            filter: mollifier.map(|filter| modes.function(|k| filter.filter(flows[k].squared_phase()))),
+            inverse_mass: inverse::<S>(&mechanics.mass_at(&part.reference))?,
+            momentum_at_rest: momentum,
+            part,
+        })
+    }
+
+    /// `p + T (q − q_ref) − ½h ∂/∂q U(t, φ(hW) q)`.
+    #[inline]
+    fn kicked(
+        &self,
+        mechanics: &Mechanics<S>,
+        t: f64,
+        q: &S::PerCoordinate<f64>,
+        p: &S::PerCoordinate<f64>,
+    ) -> S::PerCoordinate<f64> {
+        let displacement = self.part.displacement(q);
+        let linear = times::<S>(false, &self.kick, |i| displacement[i]);
+        let gradient = match &self.filter {
+            None => self.part.remaining_gradient(mechanics, t, &displacement),
+            Some(filter) => {
+                let filtered = times::<S>(false, filter, |i| displacement[i]);
+                let inner = self.part.remaining_gradient(mechanics, t, &filtered);
+                let mut gradient = Array::from_fn(|_| 0.0);
+                add_transposed::<S>(filter, &inner, &mut gradient);
+                gradient
+            }
+        };
+        Array::from_fn(|i| p[i] + (linear[i] - self.half_h * gradient[i]))
+    }
+}
+
+impl<S: MechanicalSystem> KickDriftKick<S> for ImpulseStep<S> {
+    const DRIFT_IS_UNCOUPLED: bool = false;
+
+    type DriftGram = Pivoted<S::PerConstraint<S::PerConstraint<f64>>, S::PerConstraint<usize>>;
+
+    #[inline]
+    fn kicked_at_start(
+        &self,
+        mechanics: &Mechanics<S>,
+        t: f64,
+        q: &S::PerCoordinate<f64>,
+        p: &S::PerCoordinate<f64>,
+    ) -> S::PerCoordinate<f64> {
+        let p = self.kicked(mechanics, t, q, p);
+        Array::from_fn(|i| p[i] - self.momentum_at_rest[i])
+    }
+
+    #[inline]
+    fn kicked_at_end(
+        &self,
+        mechanics: &Mechanics<S>,
+        t: f64,
+        q: &S::PerCoordinate<f64>,
+        p: &S::PerCoordinate<f64>,
+    ) -> S::PerCoordinate<f64> {
+        let p = self.kicked(mechanics, t, q, p);
+        Array::from_fn(|i| p[i] + self.momentum_at_rest[i])
+    }
+
+    #[inline]
+    fn drift(&self, p: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
+        times::<S>(false, &self.drift, |i| p[i])
+    }
+
+    #[inline]
+    fn inverse_mass(&self, p: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
+        times::<S>(S::STRUCTURE.is_uncoupled(), &self.inverse_mass, |i| p[i])
+    }
+
+    #[inline]
+    fn velocity(&self, p: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
+        self.inverse_mass(&Array::from_fn(|i| p[i] - self.momentum_at_rest[i]))
+    }
+}
