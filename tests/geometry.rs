@@ -10,7 +10,7 @@ use evi_core::prelude::*;
 use evi_core::scheme::Interpolant;
 use evi_examples::{DoublePendulum, GRAVITY, Pendulum, SphericalPendulum, Start};
 use evi_tests::scenes::{ChargedSphericalPendulum, DoublePendulumInAngles, RelativisticBead};
-use evi_tests::tangent::{Action, TangentSpace, form, vector};
+use evi_tests::tangent::{Action, DiscreteAction, TangentSpace, form, vector};
 use evi_tests::{Random, observed_order};
 use nalgebra::{DMatrix, DVector};
 

@@ -4,12 +4,14 @@
 //! benchmarks share.
 
 pub mod double_pendulum;
+pub mod fermi_pasta_ulam;
 pub mod harmonic_oscillator;
 pub mod pendulum;
 pub mod spherical_pendulum;
 pub mod stiff_spring_pendulum;
 
 pub use double_pendulum::DoublePendulum;
+pub use fermi_pasta_ulam::FermiPastaUlam;
 pub use harmonic_oscillator::HarmonicOscillator;
 pub use pendulum::Pendulum;
 pub use spherical_pendulum::SphericalPendulum;

@@ -8,7 +8,9 @@ use clap::Parser;
 
 use evi_core::prelude::*;
 use evi_core::report::SystemReport;
-use evi_examples::{DoublePendulum, HarmonicOscillator, Pendulum, SphericalPendulum, StiffSpringPendulum};
+use evi_examples::{
+    DoublePendulum, FermiPastaUlam, HarmonicOscillator, Pendulum, SphericalPendulum, StiffSpringPendulum,
+};
 
 /// Equations, structure and generated code of a scene of the gallery.
 #[derive(Parser)]
@@ -36,8 +38,9 @@ struct Scene {
     source: Option<&'static str>,
 }
 
-const SCENES: [Scene; 5] = [
+const SCENES: [Scene; 6] = [
     Scene::of::<DoublePendulum>(),
+    Scene::of::<FermiPastaUlam>(),
     Scene::of::<HarmonicOscillator>(),
     Scene::of::<Pendulum>(),
     Scene::of::<SphericalPendulum>(),

@@ -1,6 +1,7 @@
 //! What several tests need: orders of convergence, an integrator that shares nothing with evi-core, certified
 //! reference numbers, scenes beside the gallery, and random numbers that are the same on every machine.
 
+pub mod matrix_action;
 pub mod references;
 pub mod scenes;
 pub mod tangent;
