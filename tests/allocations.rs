@@ -145,6 +145,14 @@ fn no_step_of_a_baseline_allocates() {
     check(SPRING, Rk4::new(0.01), SPRING.horizontal());
 }
 
+#[test]
+fn no_step_of_a_composition_allocates() {
+    check(DOUBLE, Evi::midpoint(0.01).composed(Composition::kahan_li_8()), mild());
+    check(DOUBLE, Evi::simpson(0.01).frequencies(PER_BODY).composed(Composition::suzuki_4()), mild());
+    check(SPHERICAL, Rattle::new(0.01).composed(Composition::yoshida_6()), SPHERICAL.one_radian());
+    check(PENDULUM, Evi::simpson(0.01).composed(Composition::triple_jump_4()), SWING);
+}
+
 /// Takes 1,000 steps of the generic path and expects that none allocates.
 #[track_caller]
 fn check_generic<S: GenericSystem, const N: usize>(system: S, scheme: GenericEvi, start: Start<N>) {

@@ -247,3 +247,18 @@ pub fn form(w: &DMatrix<f64>) -> DMatrix<f64> {
     let n = w.nrows() / 2;
     w.rows(0, n).transpose() * w.rows(n, n) - w.rows(n, n).transpose() * w.rows(0, n)
 }
+
+/// How much the symplectic form changes from the columns of `before` to their images `after`, in roundings of `‖DΨ‖²`.
+///
+/// # Panics
+/// If the form vanishes or nothing moves.
+#[track_caller]
+pub fn symplectic_defect(before: &DMatrix<f64>, after: &DMatrix<f64>) -> f64 {
+    let (form_before, form_after) = (form(before), form(after));
+    assert!(form_before.amax() > 0.1, "vacuous: the form vanishes");
+    assert!((after - before).amax() > 0.01, "vacuous: nothing moves");
+    let norm = after.clone().svd(false, false).singular_values.max();
+    let roundings = (form_after - form_before).amax() / (f64::EPSILON * norm * norm);
+    println!("{}: {roundings:.1} roundings, norm {norm:.2}", core::panic::Location::caller());
+    roundings
+}

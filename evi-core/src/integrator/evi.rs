@@ -1,7 +1,7 @@
 //! Exponential variational integrators.
 
 use super::multipliers::MultiplierStep;
-use super::{IterationFailure, OneStep, Scheme, StepError};
+use super::{IterationFailure, OneStep, Scheme, StepError, Symmetric};
 use crate::array::Array;
 use crate::linear::{constraint_index, largest_magnitude};
 use crate::mechanics::{DiscreteLagrangian, FoldedStep, Mechanics, Projected, State, StepStart, relative};
@@ -65,6 +65,20 @@ impl<const K: usize> Evi<K> {
     /// share theirs.
     pub fn frequencies<const N: usize>(self, frequencies: [Frequency; N]) -> Evi<K, [Frequency; N]> {
         Evi { quadrature: self.quadrature, h: self.h, interpolant: frequencies }
+    }
+}
+
+impl<const K: usize, F: Clone> Symmetric for Evi<K, F> {
+    fn step_size(&self) -> f64 {
+        self.h
+    }
+
+    fn with_step_size(&self, h: f64) -> Self {
+        Self { h, ..self.clone() }
+    }
+
+    fn check_symmetry(&self) -> Result<(), SchemeError> {
+        self.quadrature.check_symmetry()
     }
 }
 

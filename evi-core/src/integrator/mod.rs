@@ -4,6 +4,7 @@
 //! [`OneStep`] map that holds everything that is constant for the run. A [`Simulation`] joins a scene with a scheme;
 //! a [`Run`] is a simulation at a state.
 
+mod composition;
 mod evi;
 mod multipliers;
 mod run;
@@ -11,6 +12,7 @@ mod simulation;
 #[cfg(feature = "std")]
 mod trajectory;
 
+pub use composition::{Composed, ComposedStep, Composition, Symmetric};
 pub use evi::{Evi, EviStep};
 pub use run::Run;
 #[cfg(feature = "generic")]

@@ -68,6 +68,23 @@ pub enum SchemeError {
         /// Number of coordinates of the system.
         coordinates: usize,
     },
+    /// The nodes of a scheme do not mirror each other, where a symmetric scheme is asked for.
+    #[error(
+        "a composition raises the order of symmetric schemes only: node {node} of this one lies {offset} from the middle of \
+         the step with weight {weight}, its mirror image {mirrored_offset} with weight {mirrored_weight}"
+    )]
+    AsymmetricNodes {
+        /// Index of the first node without a mirror image.
+        node: usize,
+        /// `cⱼ − ½`.
+        offset: f64,
+        /// `wⱼ`.
+        weight: f64,
+        /// The same of the node that stands as far from the last as this one from the first.
+        mirrored_offset: f64,
+        /// Its weight.
+        mirrored_weight: f64,
+    },
     /// The scheme asks for a structure that the scene does not have.
     #[error("{scheme} needs {requirement}")]
     UnsupportedStructure {
@@ -76,6 +93,25 @@ pub enum SchemeError {
         /// What the scene would have to be.
         requirement: &'static str,
     },
+}
+
+impl<const K: usize> Quadrature<K> {
+    /// Returns nothing if the rule is its own mirror image.
+    pub(crate) fn check_symmetry(&self) -> Result<(), SchemeError> {
+        let (offsets, weights) = (self.offsets(), self.weights());
+        // Equality of bits, which symmetric rules have by construction.
+        let has_image = |&j: &usize| offsets[j] == -offsets[K - 1 - j] && weights[j] == weights[K - 1 - j];
+        match (0..K).find(|j| !has_image(j)) {
+            None => Ok(()),
+            Some(node) => Err(SchemeError::AsymmetricNodes {
+                node,
+                offset: offsets[node],
+                weight: weights[node],
+                mirrored_offset: offsets[K - 1 - node],
+                mirrored_weight: weights[K - 1 - node],
+            }),
+        }
+    }
 }
 
 /// Returns the step size if it defines a step.
