@@ -48,6 +48,29 @@ fn at_a_tenth_of_a_radian_the_error_is_eighty_times_smaller() {
     assert!(frequency > 0.3 * straight);
 }
 
+/// At equal steps, hence equal stages.
+#[test]
+fn composed_to_high_order_the_gain_is_larger() {
+    #[track_caller]
+    fn check<const D: usize>(composition: Composition<D>, steps: u32, least: f64) {
+        let h = 10.0 / f64::from(steps);
+        let straight = mild_error(Evi::midpoint(h).composed(composition));
+        let shifted = mild_error(shifted(Quadrature::<2>::uniform(), h).composed(composition));
+        println!(
+            "{}: straight {straight:.2e}, shifted {shifted:.2e}, {:.0} times",
+            core::panic::Location::caller(),
+            straight / shifted
+        );
+        assert!(shifted > 1e-12, "at round-off");
+        assert!(straight / shifted >= least, "{}", straight / shifted);
+    }
+    check(Composition::triple_jump_4(), 133, 300.0);
+    check(Composition::suzuki_4(), 80, 300.0);
+    check(Composition::yoshida_6(), 57, 300.0);
+    check(Composition::kahan_li_6(), 44, 300.0);
+    check(Composition::kahan_li_8(), 30, 300.0);
+}
+
 #[test]
 fn the_gain_goes_with_the_square_of_the_amplitude() {
     let (h, t) = (0.025, 5.0);

@@ -1,7 +1,7 @@
 //! RATTLE, in its classical velocity form.
 
 use crate::array::Array;
-use crate::integrator::{IterationFailure, OneStep, Scheme, StepError};
+use crate::integrator::{IterationFailure, OneStep, Scheme, StepError, Symmetric};
 use crate::linear::{Factorization, SingularMatrix, largest_magnitude};
 use crate::mechanics::{Mechanics, ProjectionError, State, relative};
 use crate::newton;
@@ -25,6 +25,20 @@ impl Rattle {
     /// Steps of size `h`.
     pub const fn new(h: f64) -> Self {
         Self { h }
+    }
+}
+
+impl Symmetric for Rattle {
+    fn step_size(&self) -> f64 {
+        self.h
+    }
+
+    fn with_step_size(&self, h: f64) -> Self {
+        Self { h }
+    }
+
+    fn check_symmetry(&self) -> Result<(), SchemeError> {
+        Ok(())
     }
 }
 

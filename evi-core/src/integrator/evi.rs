@@ -1,14 +1,13 @@
 //! Exponential variational integrators.
 
+use super::curves::check_soft_coordinates;
 use super::multipliers::MultiplierStep;
-use super::{IterationFailure, OneStep, Scheme, StepError};
+use super::{IterationFailure, OneStep, Scheme, StepError, Symmetric};
 use crate::array::Array;
 use crate::linear::{constraint_index, largest_magnitude};
 use crate::mechanics::{DiscreteLagrangian, FoldedStep, Mechanics, Projected, State, StepStart, relative};
 use crate::newton;
-use crate::scheme::{
-    About, Fitted, Frequency, Interpolant, Linear, Quadrature, SchemeError, checked_step_size, growth_rate,
-};
+use crate::scheme::{Frequency, Interpolant, Linear, Quadrature, SchemeError, checked_step_size};
 use crate::system::MechanicalSystem;
 
 /// An exponential variational integrator with `K` intermediate points.
@@ -32,10 +31,10 @@ use crate::system::MechanicalSystem;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Evi<const K: usize, F = Linear> {
-    quadrature: Quadrature<K>,
-    h: f64,
-    interpolant: F,
-    allows_soft_modes: bool,
+    pub(super) quadrature: Quadrature<K>,
+    pub(super) h: f64,
+    pub(super) interpolant: F,
+    pub(super) allows_soft_modes: bool,
 }
 
 impl Evi<1> {
@@ -78,97 +77,18 @@ impl Evi<2> {
     }
 }
 
-impl Evi<3, Frequency> {
-    /// Weights fitted to the frequency, in the place of those of the rule: an oscillator of this frequency is reproduced to
-    /// round-off in position, momentum and energy. See [`Fitted`].
-    ///
-    /// ```
-    /// use evi_core::prelude::*;
-    /// let scheme = Evi::simpson(0.5).frequency(2.0).fitted();
-    /// # let _ = scheme;
-    /// ```
-    pub fn fitted(self) -> Evi<3, Fitted> {
-        let frequency = self.interpolant;
-        self.on(Fitted { frequency })
-    }
-}
-
-impl<const K: usize> Evi<K, Frequency> {
-    /// Interpolates `q − reference` in the place of `q`; see [`About`].
-    ///
-    /// ```
-    /// use evi_core::prelude::*;
-    /// let scheme = Evi::simpson(0.01).frequency(3.13).about([0.0, -1.0, 0.0, -2.0]);
-    /// # let _ = scheme;
-    /// ```
-    pub fn about<const N: usize>(self, reference: [f64; N]) -> Evi<K, About<Frequency, N>> {
-        self.referred_to(reference)
-    }
-}
-
-impl<const K: usize, const N: usize> Evi<K, [Frequency; N]> {
-    /// Interpolates `q − reference` in the place of `q`; see [`About`].
-    pub fn about(self, reference: [f64; N]) -> Evi<K, About<[Frequency; N], N>> {
-        self.referred_to(reference)
-    }
-}
-
-impl Evi<3, Fitted> {
-    /// Interpolates `q − reference` in the place of `q`; see [`About`].
-    pub fn about<const N: usize>(self, reference: [f64; N]) -> Evi<3, About<Fitted, N>> {
-        self.referred_to(reference)
-    }
-}
-
-impl<const K: usize, F> Evi<K, F> {
-    /// Takes a frequency also for coordinates that nothing holds, whose motions then grow ([`growth_rate`] tells how fast): to
-    /// study that growth.
-    pub fn allow_soft_modes(self) -> Self {
-        Self { allows_soft_modes: true, ..self }
-    }
-
-    /// The rule whose nodes sample the Lagrangian.
-    pub(super) const fn quadrature(&self) -> &Quadrature<K> {
-        &self.quadrature
-    }
-
-    /// The step size.
-    pub(super) const fn step(&self) -> f64 {
+impl<const K: usize, F: Clone> Symmetric for Evi<K, F> {
+    fn step_size(&self) -> f64 {
         self.h
     }
 
-    fn on<G>(self, interpolant: G) -> Evi<K, G> {
-        let Self { quadrature, h, allows_soft_modes, .. } = self;
-        Evi { quadrature, h, interpolant, allows_soft_modes }
+    fn with_step_size(&self, h: f64) -> Self {
+        Self { h, ..self.clone() }
     }
 
-    fn referred_to<const N: usize>(self, reference: [f64; N]) -> Evi<K, About<F, N>>
-    where
-        F: Clone,
-    {
-        let interpolant = self.interpolant.clone();
-        self.on(About { interpolant, reference })
+    fn check_symmetry(&self) -> Result<(), SchemeError> {
+        self.quadrature.check_symmetry()
     }
-}
-
-/// Refuses a frequency of a coordinate that neither `L` nor a constraint depends on, where the rule makes it grow.
-fn check_soft_coordinates<S: MechanicalSystem, const K: usize>(
-    interpolant: &impl Interpolant<S>,
-    rule: &Quadrature<K>,
-    h: f64,
-) -> Result<(), SchemeError> {
-    for coordinate in 0..S::N_COORDINATES {
-        let frequency = interpolant.frequency(coordinate);
-        // The frequency itself is judged with the table.
-        if S::STRUCTURE.is_free(coordinate) && frequency.value() != 0.0 {
-            let growth_rate = growth_rate(frequency, rule, h, 0.0);
-            if growth_rate > 0.0 {
-                let (coordinate, frequency) = (S::COORDINATES[coordinate], frequency.value());
-                return Err(SchemeError::SoftCoordinate { coordinate, frequency, growth_rate });
-            }
-        }
-    }
-    Ok(())
 }
 
 impl<S: MechanicalSystem, const K: usize, F: Interpolant<S>> Scheme<S> for Evi<K, F> {

@@ -1,7 +1,7 @@
 //! Exponential variational integrators with a matrix frequency.
 
 use super::multipliers::MultiplierStep;
-use super::{Evi, IterationFailure, OneStep, Scheme, StepError};
+use super::{Evi, IterationFailure, OneStep, Scheme, StepError, Symmetric};
 use crate::array::Array;
 use crate::linear::{constraint_index, largest_magnitude};
 use crate::mechanics::{
@@ -107,7 +107,7 @@ impl<const K: usize> Evi<K> {
     }
 
     fn with_quadratic_part<P>(self, part: P) -> MatrixEvi<K, P> {
-        MatrixEvi { quadrature: *self.quadrature(), h: self.step(), part, mollifier: None }
+        MatrixEvi { quadrature: self.quadrature, h: self.h, part, mollifier: None }
     }
 }
 
@@ -145,6 +145,20 @@ impl<S: MechanicalSystem, Q: Clone + Into<S::PerCoordinate<f64>>> QuadraticModel
     fn quadratic_part(&self, mechanics: &Mechanics<S>) -> Result<QuadraticPart<S>, SchemeError> {
         let linearisation = mechanics.linearised_along(&self.q.clone().into(), &self.v.clone().into())?;
         Ok(QuadraticPart::of(mechanics, &linearisation))
+    }
+}
+
+impl<const K: usize, P: Clone> Symmetric for MatrixEvi<K, P> {
+    fn step_size(&self) -> f64 {
+        self.h
+    }
+
+    fn with_step_size(&self, h: f64) -> Self {
+        Self { h, ..self.clone() }
+    }
+
+    fn check_symmetry(&self) -> Result<(), SchemeError> {
+        self.quadrature.check_symmetry()
     }
 }
 

@@ -4,6 +4,8 @@
 //! [`OneStep`] map that holds everything that is constant for the run. A [`Simulation`] joins a scene with a scheme;
 //! a [`Run`] is a simulation at a state.
 
+mod composition;
+mod curves;
 mod evi;
 mod matrix_evi;
 mod multipliers;
@@ -12,6 +14,7 @@ mod simulation;
 #[cfg(feature = "std")]
 mod trajectory;
 
+pub use composition::{Composed, ComposedStep, Composition, Symmetric};
 pub use evi::{Evi, EviStep};
 pub use matrix_evi::{
     LinearisedAlong, LinearisedAt, MatrixEvi, MatrixEviStep, QuadraticModel, StepMode, Stiffness,

@@ -91,7 +91,9 @@ pub enum SchemeError {
     },
     /// A coordinate that nothing holds would grow on the curves of its frequency.
     #[error(
-        "coordinate `{coordinate}` is free: L and the constraints do not depend on it. With the frequency {frequency} and these          nodes its motion would grow at the rate {growth_rate:e} per unit of time. Give it `Frequency::ZERO`, or use the          midpoint; `allow_soft_modes` takes it as it is"
+        "coordinate `{coordinate}` is free: L and the constraints do not depend on it. With the frequency \
+         {frequency} and these nodes its motion would grow at the rate {growth_rate:e} per unit of time. Give it \
+         `Frequency::ZERO`, or use the midpoint; `allow_soft_modes` takes it as it is"
     )]
     SoftCoordinate {
         /// Name of the coordinate.
@@ -103,7 +105,8 @@ pub enum SchemeError {
     },
     /// `w h` of a mode is so close to a multiple of π that its flow does not determine the end of a step by its ends.
     #[error(
-        "resonant mode {mode} of frequency {frequency}: sin(w h) = {sine:e} at w h = {phase}; below 1e-3 the ends of a step do          not determine the mode between them. Choose another step size"
+        "resonant mode {mode} of frequency {frequency}: sin(w h) = {sine:e} at w h = {phase}; below 1e-3 the \
+         ends of a step do not determine the mode between them. Choose another step size"
     )]
     ResonantMode {
         /// Number of the mode, in ascending order of the squared frequencies.
@@ -144,6 +147,23 @@ pub enum SchemeError {
     /// The scene cannot be linearised where the scheme asks for it.
     #[error(transparent)]
     Linearisation(#[from] LinearisationError),
+    /// The nodes of a scheme do not mirror each other, where a symmetric scheme is asked for.
+    #[error(
+        "a composition raises the order of symmetric schemes only: node {node} of this one lies {offset} from the middle of \
+         the step with weight {weight}, its mirror image {mirrored_offset} with weight {mirrored_weight}"
+    )]
+    AsymmetricNodes {
+        /// Index of the first node without a mirror image.
+        node: usize,
+        /// `cⱼ − ½`.
+        offset: f64,
+        /// `wⱼ`.
+        weight: f64,
+        /// The same of the node that stands as far from the last as this one from the first.
+        mirrored_offset: f64,
+        /// Its weight.
+        mirrored_weight: f64,
+    },
     /// The scheme asks for a structure that the scene does not have.
     #[error("{scheme} needs {requirement}")]
     UnsupportedStructure {
@@ -166,7 +186,8 @@ pub enum LinearisationError {
     },
     /// No equilibrium was found near the configuration.
     #[error(
-        "no equilibrium found near the configuration: after {corrections} corrections the last one is {last_correction:e} of it.          A point of a motion is linearised with `linearised_along`"
+        "no equilibrium found near the configuration: after {corrections} corrections the last one is \
+         {last_correction:e} of it. A point of a motion is linearised with `linearised_along`"
     )]
     NoEquilibrium {
         /// Number of Newton corrections.
@@ -188,6 +209,25 @@ pub enum LinearisationError {
     /// A number of the linearisation is not finite.
     #[error("the linearisation is not finite")]
     NotFinite,
+}
+
+impl<const K: usize> Quadrature<K> {
+    /// Returns nothing if the rule is its own mirror image.
+    pub(crate) fn check_symmetry(&self) -> Result<(), SchemeError> {
+        let (offsets, weights) = (self.offsets(), self.weights());
+        // Equality of bits, which symmetric rules have by construction.
+        let has_image = |&j: &usize| offsets[j] == -offsets[K - 1 - j] && weights[j] == weights[K - 1 - j];
+        match (0..K).find(|j| !has_image(j)) {
+            None => Ok(()),
+            Some(node) => Err(SchemeError::AsymmetricNodes {
+                node,
+                offset: offsets[node],
+                weight: weights[node],
+                mirrored_offset: offsets[K - 1 - node],
+                mirrored_weight: weights[K - 1 - node],
+            }),
+        }
+    }
 }
 
 /// Returns the step size if it defines a step.
