@@ -19,9 +19,10 @@ use crate::system::MechanicalSystem;
 ///
 /// On straight curves every linear and angular momentum of the scene is preserved. A frequency keeps only symmetries that act
 /// linearly, such as rotations about the origin: a constant is not in the span of `cos ωt, sin ωt`, so that with `K ≥ 2`
-/// nodes motions depend on where the origin is. Give a frequency to coordinates that oscillate about 0 with about that frequency,
-/// and [`Frequency::ZERO`] to those that translate, rotate, or are soft: with `K ≥ 2` a free coordinate grows at the rate
-/// `ω² h √(Σ wⱼ σⱼ²)`.
+/// nodes motions depend on where the origin is. Give a frequency to coordinates that oscillate about 0, or about the reference of
+/// [`about`](Self::about), with about that frequency, and [`Frequency::ZERO`] to those that translate, rotate, or are soft: with `K ≥ 2`
+/// a free coordinate grows at the rate `ω² |h| √(Σ wⱼ σⱼ²)` ([`growth_rate`](crate::scheme::growth_rate)). Where nothing in the scene holds a
+/// coordinate this is refused. Where constraints bend the motion, a scalar frequency gains nothing; [`linearised_at`](Self::linearised_at) does.
 ///
 /// ```
 /// use evi_core::prelude::*;
