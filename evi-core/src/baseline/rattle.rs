@@ -3,7 +3,7 @@
 use crate::array::Array;
 use crate::integrator::{IterationFailure, OneStep, Scheme, StepError, Symmetric};
 use crate::linear::{Factorization, SingularMatrix, largest_magnitude};
-use crate::mechanics::{Mechanics, ProjectionError, State, relative};
+use crate::mechanics::{AsScene, CoordinateMatrix, Mechanics, ProjectionError, State, relative};
 use crate::newton;
 use crate::scheme::{SchemeError, checked_step_size};
 use crate::system::MechanicalSystem;
@@ -52,25 +52,17 @@ impl<S: MechanicalSystem> Scheme<S> for Rattle {
             let requirement = "a constant mass matrix and no coupling of velocity with position or time";
             return Err(SchemeError::UnsupportedStructure { scheme: SCHEME, requirement });
         }
-        let at_rest = Array::from_fn(|_| 0.0);
-        let (_, hessian) = S::lagrangian_derivatives(&mechanics.constants, 0.0, &at_rest, &at_rest);
-        let mut mass: S::PerCoordinate<S::PerCoordinate<f64>> = Array::from_fn(|_| Array::from_fn(|_| 0.0));
-        for entry in S::STRUCTURE.hessian.vv {
-            let value = entry.value(mechanics.constants.as_ref(), hessian.as_ref());
-            mass[entry.row][entry.col] = value;
-            mass[entry.col][entry.row] = value;
-        }
         let requirement = "a mass matrix that is regular, not only on the constraints";
-        let mass = S::MassFactors::factor(&mass)
+        let inverse_mass = CoordinateMatrix::inverse_of(&mechanics.constant_mass())
             .map_err(|_| SchemeError::UnsupportedStructure { scheme: SCHEME, requirement })?;
-        Ok(RattleStep { mechanics, mass, h })
+        Ok(RattleStep { mechanics, inverse_mass, h })
     }
 }
 
 /// The one-step map of [`Rattle`].
 pub struct RattleStep<S: MechanicalSystem> {
     mechanics: Mechanics<S>,
-    mass: S::MassFactors,
+    inverse_mass: CoordinateMatrix<S>,
     h: f64,
 }
 
@@ -98,8 +90,8 @@ impl<S: MechanicalSystem> OneStep<S> for RattleStep<S> {
 impl<S: MechanicalSystem> RattleStep<S> {
     /// `v + ½h M⁻¹ f(t, q)`.
     fn kicked(&self, t: f64, q: &S::PerCoordinate<f64>, v: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
-        let mut kick = S::lagrangian_gradient(&self.mechanics.constants, t, q, v).force;
-        self.mass.solve(&mut kick);
+        let force = S::lagrangian_gradient(&self.mechanics.constants, t, q, v).force;
+        let kick = self.inverse_mass.times(|i| force[i]);
         Array::from_fn(|i| v[i] + 0.5 * self.h * kick[i])
     }
 
@@ -112,16 +104,14 @@ impl<S: MechanicalSystem> RattleStep<S> {
         let (h, t) = (self.h, state.t + self.h);
         let constants = &self.mechanics.constants;
         let (_, jacobian) = S::constraint_derivatives(constants, state.t, &state.q);
-        let directions = self.mechanics.constraint_directions(&jacobian, |x| self.inverse_mass_times(x));
+        let directions = self.mechanics.constraint_directions(&jacobian, &self.inverse_mass);
         let mut q = S::PerCoordinate::<f64>::from_fn(|i| state.q[i] + h * v[i]);
         let mut constraint_residual = 0.0;
         let mut smallest_pivot_ratio = 1.0_f64;
         let iteration = newton::iterate(|correction| {
             let (mut impulse, jacobian) = S::constraint_derivatives(constants, t, &q);
             constraint_residual = largest_magnitude(impulse.as_ref().iter().copied());
-            let gram = self
-                .mechanics
-                .factor_gram(&jacobian, &directions)
+            let gram = S::GramFactors::factor(&self.mechanics.gram_matrix::<AsScene>(&jacobian, &directions))
                 .map_err(|matrix| IterationFailure::Singular { correction, matrix })?;
             smallest_pivot_ratio = smallest_pivot_ratio.min(gram.pivot_ratio());
             gram.solve(&mut impulse);
@@ -151,19 +141,13 @@ impl<S: MechanicalSystem> RattleStep<S> {
         v: &mut S::PerCoordinate<f64>,
     ) -> Result<(), SingularMatrix> {
         let (_, jacobian) = S::constraint_derivatives(&self.mechanics.constants, t, q);
-        let directions = self.mechanics.constraint_directions(&jacobian, |x| self.inverse_mass_times(x));
+        let directions = self.mechanics.constraint_directions(&jacobian, &self.inverse_mass);
         let mut impulse = self.mechanics.constraint_rate(jacobian.as_ref(), v);
-        self.mechanics.factor_gram(&jacobian, &directions)?.solve(&mut impulse);
+        S::GramFactors::factor(&self.mechanics.gram_matrix::<AsScene>(&jacobian, &directions))?
+            .solve(&mut impulse);
         for i in 0..S::N_COORDINATES {
             v[i] -= (0..S::N_CONSTRAINTS).map(|c| directions[c][i] * impulse[c]).sum::<f64>();
         }
         Ok(())
-    }
-
-    /// `M⁻¹ x`.
-    fn inverse_mass_times(&self, x: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
-        let mut x = x.clone();
-        self.mass.solve(&mut x);
-        x
     }
 }

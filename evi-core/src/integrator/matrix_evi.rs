@@ -5,7 +5,7 @@ use super::{Evi, IterationFailure, OneStep, Scheme, StepError, Symmetric};
 use crate::array::Array;
 use crate::linear::{constraint_index, largest_magnitude};
 use crate::mechanics::{
-    ImpulseStep, MatrixAction, Mechanics, Projected, QuadraticPart, State, StepModes, StepStart, relative,
+    ImpulseStep, MatrixAction, Mechanics, Projected, QuadraticPart, State, StepModes, StepStart,
 };
 use crate::newton;
 use crate::scheme::{Mollifier, Quadrature, SchemeError, checked_step_size};
@@ -282,8 +282,7 @@ fn advance<S: MechanicalSystem, const K: usize>(
         for c in 0..S::N_CONSTRAINTS {
             impulse[c] -= update[constraint_index::<S>(c)];
         }
-        let scale = kkt.scaled_length(state.q.as_ref()).max(kkt.scaled_length(difference.as_ref()));
-        Ok(relative(kkt.scaled_length(update.as_ref()), scale))
+        Ok(kkt.relative_length(|i| update[i], |i| state.q[i].abs() + difference[i].abs()))
     });
     if let Err(failure) = iteration {
         return Err(IterationFailure::at(failure, state.t, constraint_residual, smallest_pivot_ratio));

@@ -29,7 +29,7 @@ pub use simulation::{ConstraintLabel, Simulation, StartError};
 pub use trajectory::{Interrupted, Trajectory};
 
 use crate::linear::SingularMatrix;
-use crate::mechanics::{Mechanics, ProjectionError, State};
+use crate::mechanics::{Mechanics, NOTHING, ProjectionError, State};
 use crate::newton::NotConverged;
 use crate::scheme::SchemeError;
 use crate::system::MechanicalSystem;
@@ -157,11 +157,13 @@ impl<S: MechanicalSystem> State<S> {
         p: S::PerCoordinate<f64>,
     ) -> Result<(), StepError> {
         // A sum is finite only if all of its terms are; only numbers near the largest one overflow together.
-        let mut sum = 0.0;
+        let mut sum = NOTHING;
         for i in 0..S::N_COORDINATES {
             sum += q[i] + v[i] + p[i];
         }
-        if !sum.is_finite() {
+        // Written so that a NaN is refused; `is_finite` takes twice the instructions.
+        let is_finite = sum.abs() < f64::INFINITY;
+        if !is_finite {
             return Err(StepError::NotFinite { t });
         }
         *self = Self { t, q, v, p };

@@ -70,7 +70,8 @@ impl<S: MechanicalSystem, M: OneStep<S>> Run<S, M> {
         self.map.advance(&mut self.state)?;
         self.steps += 1;
         // A product, since a sum of 1e6 step sizes loses six digits.
-        self.state.t = self.start_time + self.steps as f64 * self.map.h();
+        // The cast of a signed number is one instruction; no run has 2⁶³ steps.
+        self.state.t = self.start_time + self.steps as i64 as f64 * self.map.h();
         Ok(&self.state)
     }
 

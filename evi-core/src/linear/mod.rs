@@ -32,6 +32,12 @@ pub trait Factorization<V, M>: Sized {
     /// [`SingularMatrix`] when the smallest pivot is lost in the round-off of the largest.
     fn factor(matrix: &M) -> Result<Self, SingularMatrix>;
 
+    /// Factors a matrix whose rows and columns have different units, if that needs no comparison of pivots with each other.
+    #[inline]
+    fn factor_unscaled(_matrix: &M) -> Option<Self> {
+        None
+    }
+
     /// Overwrites the right-hand side `b` with the solution of `A x = b`.
     fn solve(&self, rhs: &mut V);
 

@@ -14,8 +14,9 @@
 
 use core::marker::PhantomData;
 
-use super::matrix::{Matrix, inverse, times, zero_matrix};
-use super::{DiscreteLagrangian, KickDriftKick, Mechanics, Slot};
+use super::{
+    AsScene, ConstantLegendre, CoordinateMatrix, DiscreteLagrangian, KickDriftKick, Mechanics, Rows, Slot,
+};
 use crate::array::Array;
 use crate::linear::SingularMatrix;
 use crate::scheme::Interpolant;
@@ -28,17 +29,14 @@ pub(crate) struct FoldedStep<S: MechanicalSystem, F> {
     /// `q₁ ↦ (E q₁ + c)/h`.
     end_kick: Kick<S>,
     /// `h A⁻¹`.
-    drift: Matrix<S>,
-    /// `M⁻¹`.
-    inverse_mass: Matrix<S>,
-    /// `∂L/∂v` at `v = 0`.
-    momentum_at_rest: S::PerCoordinate<f64>,
+    drift: CoordinateMatrix<S>,
+    legendre: ConstantLegendre<S>,
     curves: PhantomData<F>,
 }
 
 /// An affine force times a time.
 struct Kick<S: MechanicalSystem> {
-    linear: Matrix<S>,
+    linear: CoordinateMatrix<S>,
     constant: S::PerCoordinate<f64>,
 }
 
@@ -58,12 +56,13 @@ impl<S: MechanicalSystem, F: Interpolant<S>> FoldedStep<S, F> {
         let h = action.h();
         let constants = &action.mechanics.constants;
         let origin = S::PerCoordinate::<f64>::from_fn(|_| 0.0);
-        let mut step_matrix = zero_matrix::<S>();
-        let (mut start_kick, mut end_kick) = (Kick::<S>::zero(), Kick::<S>::zero());
+        let zero = CoordinateMatrix::<S>::zero_rows;
+        let (mut step_matrix, mut start_matrix, mut end_matrix) = (zero(), zero(), zero());
+        let (mut start_constant, mut end_constant) = (origin.clone(), origin.clone());
         action.for_each_node(0.0, &origin, &origin, |node, weight, t, x, v| {
             let (LagrangianGradient { force, momentum }, hessian) =
                 S::lagrangian_derivatives(constants, t, x, v);
-            let add = |matrix: &mut Matrix<S>, factor: f64, first, second| {
+            let add = |matrix: &mut Rows<S>, factor: f64, first, second| {
                 action.for_each_second_derivative(
                     node,
                     weight,
@@ -74,38 +73,26 @@ impl<S: MechanicalSystem, F: Interpolant<S>> FoldedStep<S, F> {
                 );
             };
             add(&mut step_matrix, -1.0, Slot::START, Slot::END);
-            add(&mut start_kick.linear, 1.0 / h, Slot::START, Slot::BOTH);
-            add(&mut end_kick.linear, 1.0 / h, Slot::BOTH, Slot::END);
+            add(&mut start_matrix, 1.0 / h, Slot::START, Slot::BOTH);
+            add(&mut end_matrix, 1.0 / h, Slot::BOTH, Slot::END);
             for i in 0..S::N_COORDINATES {
                 let c = action.coefficients(node, i);
-                start_kick.constant[i] += weight * (h * c.start() * force[i] + c.start_rate() * momentum[i]);
-                end_kick.constant[i] += weight * (h * c.end() * force[i] + c.end_rate() * momentum[i]);
+                start_constant[i] += weight * (h * c.start() * force[i] + c.start_rate() * momentum[i]);
+                end_constant[i] += weight * (h * c.end() * force[i] + c.end_rate() * momentum[i]);
             }
         });
-        let (LagrangianGradient { momentum, .. }, hessian) =
-            S::lagrangian_derivatives(constants, 0.0, &origin, &origin);
-        let mut mass = zero_matrix::<S>();
-        for entry in S::STRUCTURE.hessian.vv {
-            let value = entry.value(constants.as_ref(), hessian.as_ref());
-            mass[entry.row][entry.col] = value;
-            mass[entry.col][entry.row] = value;
-        }
-        let response = inverse::<S>(&step_matrix)?;
         Ok(Self {
-            start_kick,
-            end_kick,
-            drift: Array::from_fn(|row| Array::from_fn(|col| h * response[row][col])),
-            inverse_mass: inverse::<S>(&mass)?,
-            momentum_at_rest: momentum,
+            start_kick: Kick { linear: CoordinateMatrix::new(start_matrix), constant: start_constant },
+            end_kick: Kick { linear: CoordinateMatrix::new(end_matrix), constant: end_constant },
+            drift: CoordinateMatrix::inverse_of(&step_matrix)?.scaled(h),
+            legendre: ConstantLegendre::new(&action.mechanics)?,
             curves: PhantomData,
         })
     }
 }
 
 impl<S: MechanicalSystem, F: Interpolant<S>> KickDriftKick<S> for FoldedStep<S, F> {
-    const DRIFT_IS_UNCOUPLED: bool = S::STRUCTURE.is_uncoupled();
-
-    type DriftGram = S::GramFactors;
+    type Coupling = AsScene;
 
     #[inline]
     fn kicked_at_start(
@@ -129,30 +116,18 @@ impl<S: MechanicalSystem, F: Interpolant<S>> KickDriftKick<S> for FoldedStep<S, 
         self.end_kick.apply(F::IS_STRAIGHT, q, p)
     }
 
-    #[inline]
-    fn drift(&self, p: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
-        times::<S>(S::STRUCTURE.is_uncoupled(), &self.drift, |i| p[i])
+    #[inline(always)]
+    fn drift(&self) -> &CoordinateMatrix<S> {
+        &self.drift
     }
 
-    #[inline]
-    fn inverse_mass(&self, p: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
-        times::<S>(S::STRUCTURE.is_uncoupled(), &self.inverse_mass, |i| p[i])
-    }
-
-    #[inline]
-    fn velocity(&self, p: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
-        if S::STRUCTURE.momentum_vanishes_at_rest {
-            return self.inverse_mass(p);
-        }
-        times::<S>(S::STRUCTURE.is_uncoupled(), &self.inverse_mass, |i| p[i] - self.momentum_at_rest[i])
+    #[inline(always)]
+    fn legendre(&self) -> &ConstantLegendre<S> {
+        &self.legendre
     }
 }
 
 impl<S: MechanicalSystem> Kick<S> {
-    fn zero() -> Self {
-        Self { linear: zero_matrix::<S>(), constant: Array::from_fn(|_| 0.0) }
-    }
-
     /// `p` after the kick at `q`, which does not depend on `q` where curves are straight and `L` is at most linear in `q`.
     #[inline]
     fn apply(
@@ -164,7 +139,7 @@ impl<S: MechanicalSystem> Kick<S> {
         if is_straight && S::STRUCTURE.hessian.qq.is_empty() {
             return Array::from_fn(|i| p[i] + self.constant[i]);
         }
-        let linear = times::<S>(S::STRUCTURE.is_uncoupled(), &self.linear, |i| q[i]);
+        let linear = self.linear.times(|i| q[i]);
         Array::from_fn(|i| p[i] + (linear[i] + self.constant[i]))
     }
 }

@@ -10,27 +10,26 @@
 //! with `W² = M⁻¹ Ω` (Deuflhard, ZAMP 30 (1979) 177; Hairer, Lubich, Wanner, Geometric Numerical Integration, sec. XIII.1): explicit but for
 //! the constraints, symplectic, of order 2, and exact where `U = 0`.
 
-use super::matrix::{Matrix, add_transposed, inverse, times};
-use super::{KickDriftKick, Mechanics, QuadraticPart, StepModes};
+use super::coordinate_matrix::{add_transposed, times};
+use super::{
+    ConstantLegendre, CoordinateMatrix, Full, KickDriftKick, Mechanics, QuadraticPart, Rows, StepModes,
+};
 use crate::array::Array;
-use crate::linear::{Pivoted, SingularMatrix};
+use crate::linear::SingularMatrix;
 use crate::scheme::Mollifier;
-use crate::system::{LagrangianGradient, MechanicalSystem};
+use crate::system::MechanicalSystem;
 
 /// An impulse step without its constraint forces.
 pub(crate) struct ImpulseStep<S: MechanicalSystem> {
     part: QuadraticPart<S>,
     half_h: f64,
     /// `T`.
-    kick: Matrix<S>,
+    kick: Rows<S>,
     /// `D`.
-    drift: Matrix<S>,
+    drift: CoordinateMatrix<S, Full>,
     /// `φ(hW)`, where positions are filtered.
-    filter: Option<Matrix<S>>,
-    /// `M⁻¹`.
-    inverse_mass: Matrix<S>,
-    /// `∂L/∂v` at `v = 0`.
-    momentum_at_rest: S::PerCoordinate<f64>,
+    filter: Option<Rows<S>>,
+    legendre: ConstantLegendre<S>,
 }
 
 impl<S: MechanicalSystem> ImpulseStep<S> {
@@ -45,16 +44,12 @@ impl<S: MechanicalSystem> ImpulseStep<S> {
         mollifier: Option<Mollifier>,
         h: f64,
     ) -> Result<Self, SingularMatrix> {
-        let at_rest = Array::from_fn(|_| 0.0);
-        let LagrangianGradient { momentum, .. } =
-            S::lagrangian_gradient(&mechanics.constants, 0.0, &part.reference, &at_rest);
         Ok(Self {
             half_h: 0.5 * h,
             kick: modes.to_momenta(|k| flows[k].kick),
-            drift: modes.to_positions(|k| flows[k].drift),
+            drift: CoordinateMatrix::new(modes.to_positions(|k| flows[k].drift)),
             filter: mollifier.map(|filter| modes.function(|k| filter.filter(flows[k].squared_phase()))),
-            inverse_mass: inverse::<S>(&mechanics.mass_at(&part.reference))?,
-            momentum_at_rest: momentum,
+            legendre: ConstantLegendre::new(mechanics)?,
             part,
         })
     }
@@ -69,11 +64,11 @@ impl<S: MechanicalSystem> ImpulseStep<S> {
         p: &S::PerCoordinate<f64>,
     ) -> S::PerCoordinate<f64> {
         let displacement = self.part.displacement(q);
-        let linear = times::<S>(false, &self.kick, |i| displacement[i]);
+        let linear = times::<S>(&self.kick, &displacement);
         let gradient = match &self.filter {
             None => self.part.remaining_gradient(mechanics, t, &displacement),
             Some(filter) => {
-                let filtered = times::<S>(false, filter, |i| displacement[i]);
+                let filtered = times::<S>(filter, &displacement);
                 let inner = self.part.remaining_gradient(mechanics, t, &filtered);
                 let mut gradient = Array::from_fn(|_| 0.0);
                 add_transposed::<S>(filter, &inner, &mut gradient);
@@ -85,9 +80,7 @@ impl<S: MechanicalSystem> ImpulseStep<S> {
 }
 
 impl<S: MechanicalSystem> KickDriftKick<S> for ImpulseStep<S> {
-    const DRIFT_IS_UNCOUPLED: bool = false;
-
-    type DriftGram = Pivoted<S::PerConstraint<S::PerConstraint<f64>>, S::PerConstraint<usize>>;
+    type Coupling = Full;
 
     #[inline]
     fn kicked_at_start(
@@ -98,7 +91,7 @@ impl<S: MechanicalSystem> KickDriftKick<S> for ImpulseStep<S> {
         p: &S::PerCoordinate<f64>,
     ) -> S::PerCoordinate<f64> {
         let p = self.kicked(mechanics, t, q, p);
-        Array::from_fn(|i| p[i] - self.momentum_at_rest[i])
+        self.legendre.moving(&p)
     }
 
     #[inline]
@@ -110,21 +103,16 @@ impl<S: MechanicalSystem> KickDriftKick<S> for ImpulseStep<S> {
         p: &S::PerCoordinate<f64>,
     ) -> S::PerCoordinate<f64> {
         let p = self.kicked(mechanics, t, q, p);
-        Array::from_fn(|i| p[i] + self.momentum_at_rest[i])
+        self.legendre.canonical(&p)
     }
 
     #[inline]
-    fn drift(&self, p: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
-        times::<S>(false, &self.drift, |i| p[i])
+    fn drift(&self) -> &CoordinateMatrix<S, Full> {
+        &self.drift
     }
 
     #[inline]
-    fn inverse_mass(&self, p: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
-        times::<S>(S::STRUCTURE.is_uncoupled(), &self.inverse_mass, |i| p[i])
-    }
-
-    #[inline]
-    fn velocity(&self, p: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
-        self.inverse_mass(&Array::from_fn(|i| p[i] - self.momentum_at_rest[i]))
+    fn legendre(&self) -> &ConstantLegendre<S> {
+        &self.legendre
     }
 }

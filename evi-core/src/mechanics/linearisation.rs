@@ -3,7 +3,7 @@
 //! Constraints bend the motion: with the multipliers `λ` that hold the scene, `Ω = V_qq + Σ λᵢ (φᵢ)_qq`.
 
 use super::modes::{Modes, reduced};
-use super::{Matrix, Mechanics, ProjectionError};
+use super::{Directions, Mechanics, ProjectionError, Rows};
 use crate::array::Array;
 use crate::linear::{Cholesky, Kkt, constraint_index, unknowns};
 use crate::newton::{self, NotConverged};
@@ -23,9 +23,9 @@ pub struct Linearisation<S: MechanicalSystem> {
     configuration: S::PerCoordinate<f64>,
     reference: S::PerCoordinate<f64>,
     multipliers: S::PerConstraint<f64>,
-    stiffness: Matrix<S>,
+    stiffness: Rows<S>,
     squared_frequencies: S::PerCoordinate<f64>,
-    shapes: Matrix<S>,
+    shapes: Rows<S>,
     n_modes: usize,
 }
 
@@ -132,10 +132,10 @@ impl<S: MechanicalSystem> Mechanics<S> {
     }
 
     /// `M` at rest, by rows.
-    pub(crate) fn mass_at(&self, q: &S::PerCoordinate<f64>) -> Matrix<S> {
+    pub(crate) fn mass_at(&self, q: &S::PerCoordinate<f64>) -> Rows<S> {
         let at_rest = Array::from_fn(|_| 0.0);
         let (_, hessian) = S::lagrangian_derivatives(&self.constants, 0.0, q, &at_rest);
-        let mut mass: Matrix<S> = Array::from_fn(|_| Array::from_fn(|_| 0.0));
+        let mut mass: Rows<S> = Array::from_fn(|_| Array::from_fn(|_| 0.0));
         for entry in S::STRUCTURE.hessian.vv {
             let value = entry.value(self.constants.as_ref(), hessian.as_ref());
             mass[entry.row][entry.col] = value;
@@ -146,10 +146,10 @@ impl<S: MechanicalSystem> Mechanics<S> {
 
     /// `V_qq` at rest, by rows.
     #[inline]
-    pub(crate) fn potential_hessian(&self, t: f64, q: &S::PerCoordinate<f64>) -> Matrix<S> {
+    pub(crate) fn potential_hessian(&self, t: f64, q: &S::PerCoordinate<f64>) -> Rows<S> {
         let at_rest = Array::from_fn(|_| 0.0);
         let (_, hessian) = S::lagrangian_derivatives(&self.constants, t, q, &at_rest);
-        let mut stiffness: Matrix<S> = Array::from_fn(|_| Array::from_fn(|_| 0.0));
+        let mut stiffness: Rows<S> = Array::from_fn(|_| Array::from_fn(|_| 0.0));
         for entry in S::STRUCTURE.hessian.qq {
             let value = -entry.value(self.constants.as_ref(), hessian.as_ref());
             stiffness[entry.row][entry.col] = value;
@@ -158,7 +158,7 @@ impl<S: MechanicalSystem> Mechanics<S> {
         stiffness
     }
 
-    fn stiffness_at(&self, q: &S::PerCoordinate<f64>, multipliers: &S::PerConstraint<f64>) -> Matrix<S> {
+    fn stiffness_at(&self, q: &S::PerCoordinate<f64>, multipliers: &S::PerConstraint<f64>) -> Rows<S> {
         let mut stiffness = self.potential_hessian(0.0, q);
         self.for_each_constraint_curvature(0.0, q, multipliers, |row, col, curvature| {
             stiffness[row][col] += curvature;
@@ -212,8 +212,7 @@ impl<S: MechanicalSystem> Mechanics<S> {
             }
             // The multipliers enter linearly: their values, not increments, belong to the corrected configuration.
             multipliers = Array::from_fn(|c| correction[constraint_index::<S>(c)]);
-            let length = kkt.scaled_length(correction.as_ref());
-            Ok(super::relative(length, kkt.scaled_length(q.as_ref()).max(length)))
+            Ok(kkt.relative_length(|i| correction[i], |i| q[i].abs() + correction[i].abs()))
         });
         match found {
             Ok(_) => Ok(q),
@@ -282,12 +281,15 @@ impl<S: MechanicalSystem> Mechanics<S> {
     /// The directions `L⁻¹ Gᵀ`, made orthonormal, and how many there are; the other rows are zero.
     fn orthonormal_gradients(
         &self,
-        metric: &Cholesky<Matrix<S>>,
+        metric: &Cholesky<Rows<S>>,
         q: &S::PerCoordinate<f64>,
-    ) -> (Matrix<S>, usize) {
+    ) -> (Rows<S>, usize) {
         let (_, jacobian) = S::constraint_derivatives(&self.constants, 0.0, q);
-        let gradients = self.constraint_directions(&jacobian, |gradient| gradient.clone());
-        let mut normals: Matrix<S> = Array::from_fn(|_| Array::from_fn(|_| 0.0));
+        let mut gradients: Directions<S> = Array::from_fn(|_| Array::from_fn(|_| 0.0));
+        for entry in S::STRUCTURE.jacobian.q {
+            gradients[entry.row][entry.col] = entry.value(self.constants.as_ref(), jacobian.as_ref());
+        }
+        let mut normals: Rows<S> = Array::from_fn(|_| Array::from_fn(|_| 0.0));
         let mut rank = 0;
         for gradient in gradients.as_ref() {
             let mut normal = gradient.clone();
@@ -346,7 +348,7 @@ fn check_structure<S: MechanicalSystem>() -> Result<(), LinearisationError> {
 }
 
 /// `(1 − n nᵀ) A (1 − n nᵀ)` for a unit vector and a symmetric matrix, which stays symmetric to the last bit.
-fn project_out<S: MechanicalSystem>(matrix: &mut Matrix<S>, normal: &S::PerCoordinate<f64>) {
+fn project_out<S: MechanicalSystem>(matrix: &mut Rows<S>, normal: &S::PerCoordinate<f64>) {
     let image = S::PerCoordinate::<f64>::from_fn(|row| {
         (0..S::N_COORDINATES).map(|col| matrix[row.max(col)][row.min(col)] * normal[col]).sum()
     });

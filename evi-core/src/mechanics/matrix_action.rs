@@ -8,8 +8,8 @@
 //! The coefficients of [`crate::scheme::NodeCoefficients`], with matrices in the place of numbers. The exact action is that of a kick,
 //! a drift and a kick ([`super::ImpulseStep`] has the formulas).
 
-use super::matrix::{Matrix, add_transposed, times};
-use super::{Mechanics, QuadraticPart, StepModes, StepStart};
+use super::coordinate_matrix::{add_transposed, times};
+use super::{Mechanics, QuadraticPart, Rows, StepModes, StepStart};
 use crate::array::Array;
 use crate::linear::{Kkt, unknowns};
 use crate::scheme::{Mollifier, Quadrature};
@@ -22,9 +22,9 @@ pub(crate) struct MatrixAction<S: MechanicalSystem, const K: usize> {
     h: f64,
     quadrature: Quadrature<K>,
     /// `T`.
-    kick: Matrix<S>,
+    kick: Rows<S>,
     /// `D⁻¹`.
-    inverse_drift: Matrix<S>,
+    inverse_drift: Rows<S>,
     nodes: [Node<S>; K],
     /// `∂L/∂v` at `v = 0`.
     momentum_at_rest: S::PerCoordinate<f64>,
@@ -33,9 +33,9 @@ pub(crate) struct MatrixAction<S: MechanicalSystem, const K: usize> {
 /// How the position at a node depends on the ends of a step.
 struct Node<S: MechanicalSystem> {
     /// Position per half-sum.
-    even: Matrix<S>,
+    even: Rows<S>,
     /// Position per difference.
-    odd: Matrix<S>,
+    odd: Rows<S>,
 }
 
 /// What the rest of the potential makes of a step.
@@ -99,7 +99,7 @@ impl<S: MechanicalSystem, const K: usize> MatrixAction<S, K> {
             }
         }
         let kicked = self.kicked_at_start(start, difference, Some(&mut kkt));
-        let drifted = times::<S>(false, &self.inverse_drift, |i| difference[i]);
+        let drifted = times::<S>(&self.inverse_drift, difference);
         let mut momentum_row = S::PerCoordinate::<f64>::from_fn(|i| h * (drifted[i] - kicked[i]));
         let constants = &self.mechanics.constants;
         let end = Array::from_fn(|i| start.q[i] + difference[i]);
@@ -124,7 +124,7 @@ impl<S: MechanicalSystem, const K: usize> MatrixAction<S, K> {
         self.mechanics.subtract_constraint_force(start.jacobian.as_ref(), impulse.as_ref(), p.as_mut());
         let end = Array::from_fn(|i| start.q[i] + difference[i]);
         let displacement = self.part.displacement(&end);
-        let linear = times::<S>(false, &self.kick, |i| displacement[i]);
+        let linear = times::<S>(&self.kick, &displacement);
         let Impulses { end, .. } = self.impulses(start, difference, None);
         Array::from_fn(|i| p[i] + self.momentum_at_rest[i] + (linear[i] - end[i]))
     }
@@ -138,7 +138,7 @@ impl<S: MechanicalSystem, const K: usize> MatrixAction<S, K> {
         kkt: Option<&mut Kkt<S>>,
     ) -> S::PerCoordinate<f64> {
         let displacement = self.part.displacement(start.q);
-        let linear = times::<S>(false, &self.kick, |i| displacement[i]);
+        let linear = times::<S>(&self.kick, &displacement);
         let Impulses { start: impulse, .. } = self.impulses(start, difference, kkt);
         Array::from_fn(|i| start.p[i] - self.momentum_at_rest[i] + (linear[i] - impulse[i]))
     }
@@ -154,10 +154,7 @@ impl<S: MechanicalSystem, const K: usize> MatrixAction<S, K> {
         let half_sum = self.part.displacement(&half_sum);
         let mut sum = Impulses::<S> { start: Array::from_fn(|_| 0.0), end: Array::from_fn(|_| 0.0) };
         for (j, node) in self.nodes.iter().enumerate() {
-            let (even, odd) = (
-                times::<S>(false, &node.even, |i| half_sum[i]),
-                times::<S>(false, &node.odd, |i| difference[i]),
-            );
+            let (even, odd) = (times::<S>(&node.even, &half_sum), times::<S>(&node.odd, difference));
             let x = Array::from_fn(|i| even[i] + odd[i]);
             let t = start.t + (0.5 + self.quadrature.offsets()[j]) * self.h;
             let weight = self.h * self.quadrature.weights()[j];
@@ -182,11 +179,11 @@ impl<S: MechanicalSystem, const K: usize> MatrixAction<S, K> {
     }
 
     /// Adds `weight g₁ᵀ U'' g₂`, `g₁ = ½ even − odd`, `g₂ = ½ even + odd`.
-    fn add_hessian(&self, node: &Node<S>, weight: f64, hessian: &Matrix<S>, kkt: &mut Kkt<S>) {
+    fn add_hessian(&self, node: &Node<S>, weight: f64, hessian: &Rows<S>, kkt: &mut Kkt<S>) {
         let n = S::N_COORDINATES;
         let end = |row: usize, col: usize| 0.5 * node.even[row][col] + node.odd[row][col];
         let start = |row: usize, col: usize| 0.5 * node.even[row][col] - node.odd[row][col];
-        let image: Matrix<S> =
+        let image: Rows<S> =
             Array::from_fn(|row| Array::from_fn(|col| (0..n).map(|k| hessian[row][k] * end(k, col)).sum()));
         for row in 0..n {
             for col in 0..n {

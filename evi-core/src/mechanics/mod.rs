@@ -6,11 +6,13 @@
 //! quadratic Lagrangians (`FoldedStep`) and impulse methods (`ImpulseStep`).
 
 mod constraints;
+mod coordinate_matrix;
+mod coupling;
 mod folded_step;
 mod impulse_step;
 mod kick_drift_kick;
+mod legendre;
 mod linearisation;
-mod matrix;
 mod matrix_action;
 mod modes;
 mod momentum;
@@ -19,12 +21,14 @@ mod quadratic_part;
 mod state;
 mod step_equations;
 
-pub(crate) use constraints::Directions;
+pub(crate) use constraints::{Directions, NOTHING};
+pub(crate) use coordinate_matrix::{CoordinateMatrix, Rows};
+pub(crate) use coupling::{AsScene, Coupling, Full};
 pub(crate) use folded_step::FoldedStep;
 pub(crate) use impulse_step::ImpulseStep;
 pub(crate) use kick_drift_kick::KickDriftKick;
+pub(crate) use legendre::ConstantLegendre;
 pub use linearisation::Linearisation;
-pub(crate) use matrix::Matrix;
 pub(crate) use matrix_action::MatrixAction;
 pub(crate) use modes::Modes;
 pub use momentum::{Acceleration, ProjectionError};
@@ -35,6 +39,7 @@ pub(crate) use quadratic_part::StepModes;
 pub use state::State;
 pub(crate) use step_equations::{DiscreteLagrangian, Slot, StepStart};
 
+use crate::array::Array;
 use crate::linear::Kkt;
 use crate::system::MechanicalSystem;
 
@@ -53,6 +58,19 @@ impl<S: MechanicalSystem> Mechanics<S> {
     /// Folds the parameters of `system` into the constants of its equations.
     pub fn new(system: &S) -> Self {
         Self { constants: S::constants(&system.parameters()) }
+    }
+
+    /// The mass matrix of a scene in which it is constant.
+    pub(crate) fn constant_mass(&self) -> Rows<S> {
+        let at_rest = Array::from_fn(|_| 0.0);
+        let (_, hessian) = S::lagrangian_derivatives(&self.constants, 0.0, &at_rest, &at_rest);
+        let mut mass = CoordinateMatrix::<S>::zero_rows();
+        for entry in S::STRUCTURE.hessian.vv {
+            let value = entry.value(self.constants.as_ref(), hessian.as_ref());
+            mass[entry.row][entry.col] = value;
+            mass[entry.col][entry.row] = value;
+        }
+        mass
     }
 
     /// The saddle-point matrix of mass matrix and constraints, `[M Gᵀ; G 0]`.

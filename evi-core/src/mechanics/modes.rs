@@ -1,6 +1,6 @@
 //! Modes of a stiffness in the metric of a mass matrix, and functions of the matrix `W² = M⁻¹ Ω`.
 
-use super::Matrix;
+use super::Rows;
 use crate::array::Array;
 use crate::linear::{Cholesky, SymmetricEigen};
 use crate::scheme::LinearisationError;
@@ -14,9 +14,9 @@ pub(crate) struct Modes<S: MechanicalSystem> {
     /// `κₖ`, ascending.
     pub(crate) squared_frequencies: S::PerCoordinate<f64>,
     /// `xₖ`, one per row.
-    pub(crate) shapes: Matrix<S>,
+    pub(crate) shapes: Rows<S>,
     /// `M xₖ`, one per row.
-    pub(crate) momenta: Matrix<S>,
+    pub(crate) momenta: Rows<S>,
 }
 
 impl<S: MechanicalSystem> Modes<S> {
@@ -24,21 +24,21 @@ impl<S: MechanicalSystem> Modes<S> {
     ///
     /// # Errors
     /// [`LinearisationError`] for a mass matrix that is not positive definite, or numbers that are not finite.
-    pub(crate) fn new(mass: &Matrix<S>, stiffness: &Matrix<S>) -> Result<Self, LinearisationError> {
+    pub(crate) fn new(mass: &Rows<S>, stiffness: &Rows<S>) -> Result<Self, LinearisationError> {
         let metric = Cholesky::new(mass).ok_or(LinearisationError::Mass)?;
         Self::in_metric(&metric, &reduced::<S>(&metric, stiffness)?)
     }
 
     /// The modes whose stiffness in coordinates of unit mass, `L⁻¹ Ω L⁻ᵀ` with `M = L Lᵀ`, is `reduced`.
     pub(crate) fn in_metric(
-        metric: &Cholesky<Matrix<S>>,
-        reduced: &Matrix<S>,
+        metric: &Cholesky<Rows<S>>,
+        reduced: &Rows<S>,
     ) -> Result<Self, LinearisationError> {
         if !reduced.as_ref().iter().flat_map(|row| row.as_ref()).all(|x| x.is_finite()) {
             return Err(LinearisationError::NotFinite);
         }
         let SymmetricEigen { mut values, vectors } =
-            SymmetricEigen::<S::PerCoordinate<f64>, Matrix<S>>::new(reduced);
+            SymmetricEigen::<S::PerCoordinate<f64>, Rows<S>>::new(reduced);
         let largest = values.as_ref().iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
         for value in values.as_mut() {
             if value.abs() <= ZERO * S::N_COORDINATES as f64 * largest {
@@ -55,21 +55,21 @@ impl<S: MechanicalSystem> Modes<S> {
     }
 
     /// `Σ f(k) (M xₖ)(M xₖ)ᵀ`: a function of `W` that takes positions to momenta; symmetric to the last bit.
-    pub(crate) fn to_momenta(&self, f: impl Fn(usize) -> f64) -> Matrix<S> {
+    pub(crate) fn to_momenta(&self, f: impl Fn(usize) -> f64) -> Rows<S> {
         self.sum(f, &self.momenta, &self.momenta)
     }
 
     /// `Σ f(k) xₖ xₖᵀ`: a function of `W` that takes momenta to positions; symmetric to the last bit.
-    pub(crate) fn to_positions(&self, f: impl Fn(usize) -> f64) -> Matrix<S> {
+    pub(crate) fn to_positions(&self, f: impl Fn(usize) -> f64) -> Rows<S> {
         self.sum(f, &self.shapes, &self.shapes)
     }
 
     /// `Σ f(k) xₖ (M xₖ)ᵀ = f(W)`: positions to positions.
-    pub(crate) fn function(&self, f: impl Fn(usize) -> f64) -> Matrix<S> {
+    pub(crate) fn function(&self, f: impl Fn(usize) -> f64) -> Rows<S> {
         self.sum(f, &self.shapes, &self.momenta)
     }
 
-    fn sum(&self, f: impl Fn(usize) -> f64, left: &Matrix<S>, right: &Matrix<S>) -> Matrix<S> {
+    fn sum(&self, f: impl Fn(usize) -> f64, left: &Rows<S>, right: &Rows<S>) -> Rows<S> {
         let f = S::PerCoordinate::<f64>::from_fn(f);
         Array::from_fn(|row| {
             Array::from_fn(|col| {
@@ -82,16 +82,16 @@ impl<S: MechanicalSystem> Modes<S> {
 
 /// `L⁻¹ Ω L⁻ᵀ`.
 pub(crate) fn reduced<S: MechanicalSystem>(
-    metric: &Cholesky<Matrix<S>>,
-    stiffness: &Matrix<S>,
-) -> Result<Matrix<S>, LinearisationError> {
+    metric: &Cholesky<Rows<S>>,
+    stiffness: &Rows<S>,
+) -> Result<Rows<S>, LinearisationError> {
     // Columns of Ω are its rows: L⁻¹ on each leaves the rows of Ω L⁻ᵀ.
-    let half: Matrix<S> = Array::from_fn(|row| {
+    let half: Rows<S> = Array::from_fn(|row| {
         let mut line = S::PerCoordinate::<f64>::from_fn(|col| stiffness[row.max(col)][row.min(col)]);
         metric.solve(&mut line);
         line
     });
-    let transposed: Matrix<S> = Array::from_fn(|row| {
+    let transposed: Rows<S> = Array::from_fn(|row| {
         let mut line = S::PerCoordinate::<f64>::from_fn(|col| half[col][row]);
         metric.solve(&mut line);
         line

@@ -66,7 +66,7 @@ impl<S: MechanicalSystem> Mechanics<S> {
             if S::N_CONSTRAINTS > 0 {
                 self.refine_hidden_constraints(&kkt, &jacobian, &mut v, &mut impulse);
             }
-            Ok(relative(kkt.scaled_length(correction.as_ref()), kkt.scaled_length(v.as_ref())))
+            Ok(kkt.relative_length(|i| correction[i], |i| v[i]))
         };
         if S::STRUCTURE.is_quadratic_in_velocity() {
             correct()?;
@@ -135,7 +135,7 @@ impl<S: MechanicalSystem> Mechanics<S> {
             for c in 0..S::N_CONSTRAINTS {
                 multipliers[c] += correction[constraint_index::<S>(c)];
             }
-            Ok(relative(kkt.scaled_length(correction.as_ref()), kkt.scaled_length(q.as_ref())))
+            Ok(kkt.relative_length(|i| correction[i], |i| q[i]))
         })?;
         Ok(q)
     }

@@ -1,7 +1,7 @@
 //! The quadratic part of a Lagrangian, which a step integrates exactly, and the rest.
 
-use super::matrix::{Matrix, times};
-use super::{Linearisation, Mechanics, Modes};
+use super::coordinate_matrix::times;
+use super::{Linearisation, Mechanics, Modes, Rows};
 use crate::array::Array;
 use crate::scheme::{LinearisationError, ModeFlow, SchemeError};
 use crate::system::MechanicalSystem;
@@ -15,11 +15,11 @@ use crate::system::MechanicalSystem;
 /// `λ*ᵀφ` vanishes on the constraints: the motion is the same with it, its multipliers are less by `λ*`. What it changes is the split:
 /// the curvature of the constraints becomes a part of `Ω`.
 pub struct QuadraticPart<S: MechanicalSystem> {
-    pub(crate) stiffness: Matrix<S>,
+    pub(crate) stiffness: Rows<S>,
     pub(crate) reference: S::PerCoordinate<f64>,
     pub(crate) multipliers: S::PerConstraint<f64>,
     /// `Σ λᵢ* (φᵢ)_qq` at the reference.
-    curvature: Matrix<S>,
+    curvature: Rows<S>,
 }
 
 impl<S: MechanicalSystem> QuadraticPart<S> {
@@ -53,7 +53,7 @@ impl<S: MechanicalSystem> QuadraticPart<S> {
 
     /// With stiffness, reference and multipliers of a linearisation.
     pub fn of(mechanics: &Mechanics<S>, linearisation: &Linearisation<S>) -> Self {
-        let mut curvature: Matrix<S> = Array::from_fn(|_| Array::from_fn(|_| 0.0));
+        let mut curvature: Rows<S> = Array::from_fn(|_| Array::from_fn(|_| 0.0));
         let (q, multipliers) = (linearisation.configuration(), linearisation.multipliers());
         mechanics.for_each_constraint_curvature(0.0, q, multipliers, |row, col, value| {
             curvature[row][col] = value;
@@ -82,7 +82,7 @@ impl<S: MechanicalSystem> QuadraticPart<S> {
     ) -> S::PerCoordinate<f64> {
         let x = Array::from_fn(|i| self.reference[i] + displacement[i]);
         let gradient = mechanics.potential_gradient(t, &x, &self.multipliers);
-        let linear = times::<S>(false, &self.stiffness, |i| displacement[i]);
+        let linear = times::<S>(&self.stiffness, displacement);
         Array::from_fn(|i| gradient[i] - linear[i])
     }
 
@@ -94,7 +94,7 @@ impl<S: MechanicalSystem> QuadraticPart<S> {
         mechanics: &Mechanics<S>,
         t: f64,
         displacement: &S::PerCoordinate<f64>,
-    ) -> Matrix<S> {
+    ) -> Rows<S> {
         let x = Array::from_fn(|i| self.reference[i] + displacement[i]);
         let stiffness = mechanics.potential_hessian(t, &x);
         Array::from_fn(|row| {
