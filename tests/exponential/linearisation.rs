@@ -142,3 +142,29 @@ fn without_a_reference_the_origin_is_taken_for_the_equilibrium() {
     println!("{plain:.1e} {about:.1e}");
     assert!(plain > 1e-3 && about <= 1e-14, "{plain:e} {about:e}");
 }
+
+/// What the structure of the scene does not show, its linearisation does: translations grow on curves of a frequency, as
+/// foretold.
+#[test]
+fn the_growth_of_translations_is_foretold() {
+    let (molecule, h, frequency) = (Molecule::STANDARD, 0.05, Frequency::from(6.0));
+    let linearisation = Mechanics::new(&molecule).linearised_at(&Molecule::REST).expect("an equilibrium");
+    let simpson = Quadrature::<3>::uniform();
+    let rates: Vec<f64> = linearisation.growth_rates(frequency, &simpson, h).collect();
+    println!("{rates:?}");
+    assert!(rates[0] > 0.4 && rates[1] == rates[0]);
+    assert!(rates[2..].iter().all(|rate| *rate == 0.0), "vibrations are near the frequency");
+    assert!(linearisation.growth_rates(frequency, &Quadrature::midpoint(), h).all(|rate| rate == 0.0));
+
+    let scheme = Evi::simpson(h).frequency(frequency).about(Molecule::REST);
+    let moved = Molecule::REST.map(|q| q + 1e-3);
+    let mut run = Simulation::new(molecule, scheme).start(moved, [0.0; 6]).expect("a start");
+    let (early, late) = (4.0, 8.0);
+    let displacement = |state: &State<Molecule>| state.q()[3];
+    let before = displacement(run.advance_to(early).expect("every step"));
+    let after = displacement(run.advance_to(late).expect("every step"));
+    let expected = (rates[0] * late).cosh() / (rates[0] * early).cosh();
+    println!("{} for {expected}", after / before);
+    // The molecule moves as a whole.
+    assert!((after / before / expected - 1.0).abs() < 1e-3, "{} for {expected}", after / before);
+}

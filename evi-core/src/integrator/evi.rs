@@ -113,6 +113,9 @@ impl<S: MechanicalSystem, const K: usize, F: Interpolant<S>> Scheme<S> for Evi<K
     }
 }
 
+/// The difference `d = q₁ − q₀` and the impulse `Λ` of a step.
+type Solution<S> = (<S as MechanicalSystem>::PerCoordinate<f64>, <S as MechanicalSystem>::PerConstraint<f64>);
+
 /// The one-step map of an [`Evi`] for a scene, with everything folded in that is constant for a run.
 pub struct EviStep<S: MechanicalSystem, F: Interpolant<S>, const K: usize> {
     action: DiscreteLagrangian<S, F::Table<K>, K>,
@@ -205,7 +208,7 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
         q: &S::PerCoordinate<f64>,
         p: &S::PerCoordinate<f64>,
         mut difference: S::PerCoordinate<f64>,
-    ) -> Result<(S::PerCoordinate<f64>, S::PerConstraint<f64>), StepError> {
+    ) -> Result<Solution<S>, StepError> {
         let (_, jacobian) = S::constraint_derivatives(&self.mechanics().constants, t, q);
         let start = StepStart { t, q, p, jacobian };
         let mut impulse = S::PerConstraint::<f64>::from_fn(|_| 0.0);

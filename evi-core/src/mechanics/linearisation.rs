@@ -8,7 +8,7 @@ use crate::array::Array;
 use crate::linear::{Cholesky, Kkt, constraint_index, unknowns};
 use crate::newton::{self, NotConverged};
 use crate::scalar::Scalar;
-use crate::scheme::LinearisationError;
+use crate::scheme::{Frequency, LinearisationError, Quadrature, growth_rate};
 use crate::system::MechanicalSystem;
 
 /// A configuration that neutral directions keep Newton's iteration from is an equilibrium if its forces balance to this.
@@ -55,6 +55,40 @@ impl<S: MechanicalSystem> Linearisation<S> {
     /// that grows. Unit: 1 / time².
     pub fn squared_frequencies(&self) -> &[f64] {
         &self.squared_frequencies.as_ref()[..self.n_modes]
+    }
+
+    /// The rates at which a step on curves of `frequency` makes each of these modes grow ([`growth_rate`]), 0 for a mode that stays
+    /// bounded: which modes are too soft, or too stiff, for the frequency. For modes that grow in truth it tells their growth.
+    ///
+    /// ```
+    /// use evi_core::mechanics::Mechanics;
+    /// use evi_core::prelude::*;
+    ///
+    /// /// Two masses on a spring, free to move along a line.
+    /// #[derive(MechanicalSystem)]
+    /// #[evi(
+    ///     coordinates(x, y),
+    ///     kinetic = 0.5 * der(x).powi(2) + 0.5 * der(y).powi(2),
+    ///     potential = 0.5 * k * (y - x).powi(2),
+    /// )]
+    /// struct Molecule { k: f64 }
+    ///
+    /// let linearisation = Mechanics::new(&Molecule { k: 8.0 }).linearised_at(&[0.0, 0.0])?;
+    /// let rates: Vec<f64> =
+    ///     linearisation.growth_rates(Frequency::from(4.0), &Quadrature::<3>::uniform(), 0.1).collect();
+    /// assert!(rates[0] > 0.4, "translation");
+    /// assert_eq!(rates[1], 0.0, "vibration at frequency 4");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn growth_rates<const K: usize>(
+        &self,
+        frequency: Frequency,
+        rule: &Quadrature<K>,
+        h: f64,
+    ) -> impl Iterator<Item = f64> {
+        self.squared_frequencies()
+            .iter()
+            .map(move |squared_frequency| growth_rate(frequency, rule, h, *squared_frequency))
     }
 
     /// The shapes of these modes: tangent to the constraints, of unit length in the metric of the mass matrix.
