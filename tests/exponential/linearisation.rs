@@ -3,7 +3,7 @@
 use evi_core::mechanics::Mechanics;
 use evi_core::prelude::*;
 use evi_core::scheme::LinearisationError;
-use evi_examples::{DoublePendulum, SphericalPendulum};
+use evi_examples::{DoublePendulum, HarmonicOscillator, SphericalPendulum};
 use evi_tests::largest_difference;
 use evi_tests::scenes::{ChargedParticle, DoublePendulumInAngles, Dumbbell, KapitzaPendulum};
 
@@ -93,9 +93,15 @@ fn what_has_no_linearisation_says_why() {
     assert!(matches!(sphere, LinearisationError::NoEquilibrium { .. }), "{sphere}");
     let massless = error(Ring { m: 0.0, r: 1.0 }, [1.0, 0.0]);
     assert!(
-        matches!(massless, LinearisationError::Mass | LinearisationError::Projection { .. }),
+        matches!(massless, LinearisationError::Projection { pivot_ratio } if pivot_ratio < 1e-15),
         "{massless}"
     );
+    let negative = error(HarmonicOscillator { m: -1.0, k: 1.0 }, [0.0]);
+    assert_eq!(negative, LinearisationError::Mass);
+    let infinite = Mechanics::new(&HarmonicOscillator { m: 1.0, k: f64::INFINITY });
+    assert_eq!(infinite.linearised_along(&[1.0], &[0.0]).err(), Some(LinearisationError::NotFinite));
+    let angles = Mechanics::new(&DoublePendulumInAngles::UNEQUAL).linearised_along(&[0.1, 0.2], &[0.0; 2]);
+    assert!(angles.err().expect("refused").to_string().contains("constant mass"));
 }
 
 /// Distance from the start after 1,000 steps from rest.

@@ -1,10 +1,10 @@
 //! RATTLE, in its classical velocity form.
 
 use crate::array::Array;
-use crate::integrator::{IterationFailure, OneStep, Scheme, StepError, Symmetric};
+use crate::integrator::{IterationFailure, OneStep, Scheme, StepError, Symmetric, Tally};
 use crate::linear::{Factorization, SingularMatrix, largest_magnitude};
 use crate::mechanics::{AsScene, CoordinateMatrix, Mechanics, ProjectionError, State, relative};
-use crate::newton;
+use crate::newton::{self, Converged};
 use crate::scheme::{SchemeError, checked_step_size};
 use crate::system::MechanicalSystem;
 
@@ -75,12 +75,12 @@ impl<S: MechanicalSystem> OneStep<S> for RattleStep<S> {
         &self.mechanics
     }
 
-    fn advance(&mut self, state: &mut State<S>) -> Result<(), StepError> {
+    fn advance(&mut self, state: &mut State<S>, tally: &mut impl Tally) -> Result<(), StepError> {
         let t = state.t + self.h;
         let mut half_step_velocity = self.kicked(state.t, &state.q, &state.v);
-        let q = self.solve_positions(state, &mut half_step_velocity)?;
+        let q = self.solve_positions(state, &mut half_step_velocity, tally)?;
         let mut v = self.kicked(t, &q, &half_step_velocity);
-        self.project(t, &q, &mut v)
+        self.project(t, &q, &mut v, tally)
             .map_err(|cause| StepError::Projection { t, cause: ProjectionError::Singular(cause) })?;
         let p = self.mechanics.momentum_at(t, &q, &v);
         state.replace(t, q, v, p)
@@ -100,6 +100,7 @@ impl<S: MechanicalSystem> RattleStep<S> {
         &self,
         state: &State<S>,
         v: &mut S::PerCoordinate<f64>,
+        tally: &mut impl Tally,
     ) -> Result<S::PerCoordinate<f64>, StepError> {
         let (h, t) = (self.h, state.t + self.h);
         let constants = &self.mechanics.constants;
@@ -114,6 +115,9 @@ impl<S: MechanicalSystem> RattleStep<S> {
             let gram = S::GramFactors::factor(&self.mechanics.gram_matrix::<AsScene>(&jacobian, &directions))
                 .map_err(|matrix| IterationFailure::Singular { correction, matrix })?;
             smallest_pivot_ratio = smallest_pivot_ratio.min(gram.pivot_ratio());
+            if gram.is_fallback() {
+                tally.count_fallback();
+            }
             gram.solve(&mut impulse);
             let displacement = S::PerCoordinate::<f64>::from_fn(|i| {
                 (0..S::N_CONSTRAINTS).map(|c| directions[c][i] * impulse[c]).sum()
@@ -126,7 +130,10 @@ impl<S: MechanicalSystem> RattleStep<S> {
             Ok(relative(length, largest_magnitude(q.as_ref().iter().copied())))
         });
         match iteration {
-            Ok(_) => Ok(q),
+            Ok(Converged { corrections }) => {
+                tally.count_corrections(corrections);
+                Ok(q)
+            }
             Err(failure) => {
                 Err(IterationFailure::at(failure, state.t, constraint_residual, smallest_pivot_ratio))
             }
@@ -139,12 +146,16 @@ impl<S: MechanicalSystem> RattleStep<S> {
         t: f64,
         q: &S::PerCoordinate<f64>,
         v: &mut S::PerCoordinate<f64>,
+        tally: &mut impl Tally,
     ) -> Result<(), SingularMatrix> {
         let (_, jacobian) = S::constraint_derivatives(&self.mechanics.constants, t, q);
         let directions = self.mechanics.constraint_directions(&jacobian, &self.inverse_mass);
         let mut impulse = self.mechanics.constraint_rate(jacobian.as_ref(), v);
-        S::GramFactors::factor(&self.mechanics.gram_matrix::<AsScene>(&jacobian, &directions))?
-            .solve(&mut impulse);
+        let gram = S::GramFactors::factor(&self.mechanics.gram_matrix::<AsScene>(&jacobian, &directions))?;
+        if gram.is_fallback() {
+            tally.count_fallback();
+        }
+        gram.solve(&mut impulse);
         for i in 0..S::N_COORDINATES {
             v[i] -= (0..S::N_CONSTRAINTS).map(|c| directions[c][i] * impulse[c]).sum::<f64>();
         }

@@ -8,7 +8,7 @@ use crate::linear::{constraint_index, largest_magnitude};
 use crate::mechanics::{
     ConstantLegendre, DiscreteLagrangian, FoldedStep, Mechanics, Projected, ProjectionError, State, StepStart,
 };
-use crate::newton;
+use crate::newton::{self, Converged, Tally};
 use crate::scheme::{Frequency, Interpolant, Linear, Quadrature, SchemeError, checked_step_size};
 use crate::system::MechanicalSystem;
 
@@ -113,9 +113,6 @@ impl<S: MechanicalSystem, const K: usize, F: Interpolant<S>> Scheme<S> for Evi<K
     }
 }
 
-/// The difference `d = q₁ − q₀` and the impulse `Λ` of a step.
-type Solution<S> = (<S as MechanicalSystem>::PerCoordinate<f64>, <S as MechanicalSystem>::PerConstraint<f64>);
-
 /// The one-step map of an [`Evi`] for a scene, with everything folded in that is constant for a run.
 pub struct EviStep<S: MechanicalSystem, F: Interpolant<S>, const K: usize> {
     action: DiscreteLagrangian<S, F::Table<K>, K>,
@@ -124,6 +121,9 @@ pub struct EviStep<S: MechanicalSystem, F: Interpolant<S>, const K: usize> {
     /// The Legendre transform of a constant mass matrix.
     legendre: Option<ConstantLegendre<S>>,
 }
+
+/// The unknowns `(d, Λ)` of the step equations.
+type Unknowns<S> = (<S as MechanicalSystem>::PerCoordinate<f64>, <S as MechanicalSystem>::PerConstraint<f64>);
 
 impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> OneStep<S> for EviStep<S, F, K> {
     fn h(&self) -> f64 {
@@ -135,20 +135,20 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> OneStep<S> for EviS
     }
 
     #[inline]
-    fn advance(&mut self, state: &mut State<S>) -> Result<(), StepError> {
+    fn advance(&mut self, state: &mut State<S>, tally: &mut impl Tally) -> Result<(), StepError> {
         if FoldedStep::<S, F>::EXISTS
             && let Some(folded) = &mut self.folded
         {
-            return folded.advance(&self.action.mechanics, self.action.h(), state);
+            return folded.advance(&self.action.mechanics, self.action.h(), state, tally);
         }
         let h = self.action.h();
         let start_of_curve = Array::from_fn(|i| h * state.v[i]);
-        let (difference, impulse) = self.solve(state.t, &state.q, &state.p, start_of_curve)?;
+        let (difference, impulse) = self.solve(state.t, &state.q, &state.p, start_of_curve, tally)?;
         let t = state.t + h;
         let q = Array::from_fn(|i| state.q[i] + difference[i]);
         let momentum = self.action.end_momentum(state.t, &state.q, &difference);
         let Projected { v, p } = self
-            .project(t, &q, momentum, &difference, &impulse)
+            .project(t, &q, momentum, &difference, &impulse, tally)
             .map_err(|cause| StepError::Projection { t, cause })?;
         state.replace(t, q, v, p)
     }
@@ -170,7 +170,7 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
         let difference = S::PerCoordinate::<f64>::from_fn(|i| q_curr[i] - q_prev[i]);
         // The part of this momentum normal to the constraints at q_curr goes into the impulse: no projection needed.
         let momentum = self.action.end_momentum(t_prev, q_prev, &difference);
-        let (difference, _) = self.solve(t_prev + self.action.h(), q_curr, &momentum, difference)?;
+        let (difference, _) = self.solve(t_prev + self.action.h(), q_curr, &momentum, difference, &mut ())?;
         Ok(Array::from_fn(|i| q_curr[i] + difference[i]))
     }
 
@@ -183,6 +183,7 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
         momentum: S::PerCoordinate<f64>,
         difference: &S::PerCoordinate<f64>,
         impulse: &S::PerConstraint<f64>,
+        tally: &mut impl Tally,
     ) -> Result<Projected<S>, ProjectionError> {
         let (mechanics, h) = (self.mechanics(), self.action.h());
         if ConstantLegendre::<S>::EXISTS
@@ -192,11 +193,11 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
                 return Ok(Projected { v: legendre.velocity(&momentum), p: momentum });
             }
             let (_, jacobian) = S::constraint_derivatives(&mechanics.constants, t, q);
-            let gram = legendre.factor_gram(mechanics, &jacobian)?;
+            let gram = legendre.factor_gram(mechanics, &jacobian, tally)?;
             let expected = Array::from_fn(|c| impulse[c] / h);
             return Ok(legendre.project(mechanics, &gram, &jacobian, &expected, momentum));
         }
-        mechanics.project_momentum(t, q, &momentum, Array::from_fn(|i| difference[i] / h))
+        mechanics.project_momentum(t, q, &momentum, Array::from_fn(|i| difference[i] / h), tally)
     }
 
     /// The difference `d = q₁ − q₀` and the impulse `Λ` of the step from `(q, p)`, by Newton's iteration from the guess
@@ -208,7 +209,8 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
         q: &S::PerCoordinate<f64>,
         p: &S::PerCoordinate<f64>,
         mut difference: S::PerCoordinate<f64>,
-    ) -> Result<Solution<S>, StepError> {
+        tally: &mut impl Tally,
+    ) -> Result<Unknowns<S>, StepError> {
         let (_, jacobian) = S::constraint_derivatives(&self.mechanics().constants, t, q);
         let start = StepStart { t, q, p, jacobian };
         let mut impulse = S::PerConstraint::<f64>::from_fn(|_| 0.0);
@@ -220,6 +222,9 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
             constraint_residual = largest_magnitude(constraint_rows);
             let kkt = kkt.factor().map_err(|matrix| IterationFailure::Singular { correction, matrix })?;
             smallest_pivot_ratio = smallest_pivot_ratio.min(kkt.pivot_ratio());
+            if kkt.is_fallback() {
+                tally.count_fallback();
+            }
             let mut update = residual;
             kkt.solve(&mut update);
             for i in 0..S::N_COORDINATES {
@@ -231,7 +236,10 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
             Ok(kkt.relative_length(|i| update[i], |i| q[i].abs() + difference[i].abs()))
         });
         match iteration {
-            Ok(_) => Ok((difference, impulse)),
+            Ok(Converged { corrections }) => {
+                tally.count_corrections(corrections);
+                Ok((difference, impulse))
+            }
             Err(failure) => Err(IterationFailure::at(failure, t, constraint_residual, smallest_pivot_ratio)),
         }
     }

@@ -1,13 +1,13 @@
 //! Exponential variational integrators with a matrix frequency.
 
 use super::multipliers::MultiplierStep;
-use super::{Evi, IterationFailure, OneStep, Scheme, StepError, Symmetric};
+use super::{Evi, IterationFailure, OneStep, Scheme, StepError, Symmetric, Tally};
 use crate::array::Array;
 use crate::linear::{constraint_index, largest_magnitude};
 use crate::mechanics::{
     ImpulseStep, MatrixAction, Mechanics, Projected, QuadraticPart, State, StepModes, StepStart,
 };
-use crate::newton;
+use crate::newton::{self, Converged};
 use crate::scheme::{Mollifier, Quadrature, SchemeError, checked_step_size};
 use crate::system::MechanicalSystem;
 
@@ -249,10 +249,10 @@ impl<S: MechanicalSystem, const K: usize> OneStep<S> for MatrixEviStep<S, K> {
     }
 
     #[inline]
-    fn advance(&mut self, state: &mut State<S>) -> Result<(), StepError> {
+    fn advance(&mut self, state: &mut State<S>, tally: &mut impl Tally) -> Result<(), StepError> {
         match &mut self.form {
-            Form::Impulse { mechanics, step, h } => step.advance(mechanics, *h, state),
-            Form::General(action) => advance(action, state),
+            Form::Impulse { mechanics, step, h } => step.advance(mechanics, *h, state, tally),
+            Form::General(action) => advance(action, state, tally),
         }
     }
 }
@@ -261,6 +261,7 @@ impl<S: MechanicalSystem, const K: usize> OneStep<S> for MatrixEviStep<S, K> {
 fn advance<S: MechanicalSystem, const K: usize>(
     action: &MatrixAction<S, K>,
     state: &mut State<S>,
+    tally: &mut impl Tally,
 ) -> Result<(), StepError> {
     let h = action.h();
     let (_, jacobian) = S::constraint_derivatives(&action.mechanics.constants, state.t, &state.q);
@@ -284,8 +285,11 @@ fn advance<S: MechanicalSystem, const K: usize>(
         }
         Ok(kkt.relative_length(|i| update[i], |i| state.q[i].abs() + difference[i].abs()))
     });
-    if let Err(failure) = iteration {
-        return Err(IterationFailure::at(failure, state.t, constraint_residual, smallest_pivot_ratio));
+    match iteration {
+        Ok(Converged { corrections }) => tally.count_corrections(corrections),
+        Err(failure) => {
+            return Err(IterationFailure::at(failure, state.t, constraint_residual, smallest_pivot_ratio));
+        }
     }
     let momentum = action.end_momentum(&start, &difference, &impulse);
     let t = state.t + h;
@@ -293,7 +297,7 @@ fn advance<S: MechanicalSystem, const K: usize>(
     let mean_velocity = Array::from_fn(|i| difference[i] / h);
     let Projected { v, p } = action
         .mechanics
-        .project_momentum(t, &q, &momentum, mean_velocity)
+        .project_momentum(t, &q, &momentum, mean_velocity, tally)
         .map_err(|cause| StepError::Projection { t, cause })?;
     state.replace(t, q, v, p)
 }

@@ -14,6 +14,7 @@ mod simulation;
 #[cfg(feature = "std")]
 mod trajectory;
 
+pub use crate::newton::{Fallbacks, Statistics, Tally};
 pub use composition::{Composed, ComposedStep, Composition, Symmetric};
 pub use evi::{Evi, EviStep};
 pub use matrix_evi::{
@@ -54,11 +55,11 @@ pub trait OneStep<S: MechanicalSystem> {
     /// The scene that moves.
     fn mechanics(&self) -> &Mechanics<S>;
 
-    /// Overwrites `state` with the state one step later.
+    /// Overwrites `state` with the state one step later, and tells `tally` what has happened on the way.
     ///
     /// # Errors
     /// [`StepError`] when there is no such state or it is not found; `state` has not changed then.
-    fn advance(&mut self, state: &mut State<S>) -> Result<(), StepError>;
+    fn advance(&mut self, state: &mut State<S>, tally: &mut impl Tally) -> Result<(), StepError>;
 }
 
 /// A step that could not be taken. The state before the step stands.

@@ -8,8 +8,11 @@ use super::{IterationFailure, StepError};
 use crate::array::Array;
 use crate::linear::{Factorization, largest_magnitude};
 use crate::mechanics::{Coupling, Directions, KickDriftKick, Mechanics, Projected, State};
-use crate::newton::{self, Progress};
+use crate::newton::{self, Progress, Tally};
 use crate::system::MechanicalSystem;
+
+/// Corrections with one matrix that do, as a rule.
+const CHORDS: usize = 2;
 
 /// A step without its constraint forces, with the impulses that it has needed so far. They affect the number of corrections and the last bits of
 /// a state, nothing else.
@@ -46,6 +49,8 @@ struct Landing<S: MechanicalSystem> {
     impulse: S::PerConstraint<f64>,
     /// Factors of `G M⁻¹ Gᵀ` there.
     gram: S::GramFactors,
+    /// Number of corrections that led there.
+    corrections: usize,
 }
 
 impl<S: MechanicalSystem, F: KickDriftKick<S>> MultiplierStep<S, F> {
@@ -61,6 +66,7 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>> MultiplierStep<S, F> {
         mechanics: &Mechanics<S>,
         h: f64,
         state: &mut State<S>,
+        tally: &mut impl Tally,
     ) -> Result<(), StepError> {
         let free = &self.free;
         let t = state.t + h;
@@ -75,7 +81,8 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>> MultiplierStep<S, F> {
         let directions = mechanics.constraint_directions(&jacobian, free.drift());
         let (t_start, start) = (state.t, &state.q);
         let span = Span { mechanics, free, t_start, t_end: t, start, free_difference, jacobian, directions };
-        let Landing { q, impulse, gram } = span.solve(self.predicted.clone())?;
+        let Landing { q, impulse, gram, corrections } = span.solve(self.predicted.clone(), tally)?;
+        tally.count_corrections(corrections);
         mechanics.subtract_constraint_force(span.jacobian.as_ref(), impulse.as_ref(), p.as_mut());
         p = free.kicked_at_end(mechanics, t, &q, &p);
 
@@ -126,22 +133,29 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>> Span<'_, S, F> {
     /// matrix for the velocities is evaluated before the last correction, which is too short to change it: so the
     /// divisions in it do not wait for that correction.
     #[inline(always)]
-    fn solve(&self, mut impulse: S::PerConstraint<f64>) -> Result<Landing<S>, StepError> {
+    fn solve(
+        &self,
+        mut impulse: S::PerConstraint<f64>,
+        tally: &mut impl Tally,
+    ) -> Result<Landing<S>, StepError> {
         let mut q = self.end(&impulse);
         let (first, jacobian) = self.constraints_at(&q);
         let matrix = self.mechanics.gram_matrix::<F::Coupling>(&jacobian, &self.directions);
-        let Ok(chord) = DriftGram::<S, F>::factor(&matrix) else { return self.clone().solve_anew() };
+        let Ok(chord) = DriftGram::<S, F>::factor(&matrix) else { return self.clone().solve_anew(tally) };
+        if chord.is_fallback() {
+            tally.count_fallback();
+        }
         self.correct(&chord, &first, &mut q, &mut impulse);
         let (second, jacobian) = self.constraints_at(&q);
         self.correct(&chord, &second, &mut q, &mut impulse);
         let displacement = Array::from_fn(|c| matrix[c][c] * impulse[c]);
         if is_round_off_next::<S>(&second, &first, &displacement)
             && (0..S::N_CONSTRAINTS).all(|c| second[c].abs() <= SHORT * displacement[c].abs())
-            && let Ok(gram) = self.free.legendre().factor_gram(self.mechanics, &jacobian)
+            && let Ok(gram) = self.free.legendre().factor_gram(self.mechanics, &jacobian, tally)
         {
-            return Ok(Landing { q, impulse, gram });
+            return Ok(Landing { q, impulse, gram, corrections: CHORDS });
         }
-        self.clone().continue_from([first, second], q, impulse)
+        self.clone().continue_from([first, second], q, impulse, tally)
     }
 
     /// Newton's iteration after two corrections with one matrix, for the `residuals`, that led to `q`.
@@ -151,26 +165,27 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>> Span<'_, S, F> {
         [first, second]: [S::PerConstraint<f64>; 2],
         q: S::PerCoordinate<f64>,
         impulse: S::PerConstraint<f64>,
+        tally: &mut impl Tally,
     ) -> Result<Landing<S>, StepError> {
         let scale = self.scale(&q);
         if is_round_off_next::<S>(&second, &first, &scale) {
-            return self.landing(q, impulse);
+            return self.landing(q, impulse, CHORDS, tally);
         }
         let slowest = newton::SLOWEST_CHORD * relative_length::<S>(&first, &scale);
         // Written so that a NaN does not contract.
         let contracts = relative_length::<S>(&second, &scale) <= slowest.max(newton::CHORD_ROUND_OFF);
-        if contracts && let Ok(landing) = self.iterate(second, q, impulse) {
+        if contracts && let Ok(landing) = self.iterate(CHORDS, second, q, impulse, tally) {
             return Ok(landing);
         }
-        self.solve_anew()
+        self.solve_anew(tally)
     }
 
     /// Newton's iteration without the history.
     #[cold]
     #[inline(never)]
-    fn solve_anew(self) -> Result<Landing<S>, StepError> {
+    fn solve_anew(self, tally: &mut impl Tally) -> Result<Landing<S>, StepError> {
         let none = S::PerConstraint::<f64>::from_fn(|_| 0.0);
-        self.iterate(none.clone(), self.end(&none), none)
+        self.iterate(0, none.clone(), self.end(&none), none, tally)
     }
 
     /// The landing at `q`, where `φ = 0`.
@@ -178,21 +193,25 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>> Span<'_, S, F> {
         &self,
         q: S::PerCoordinate<f64>,
         impulse: S::PerConstraint<f64>,
+        corrections: usize,
+        tally: &mut impl Tally,
     ) -> Result<Landing<S>, StepError> {
         let (_, jacobian) = self.constraints_at(&q);
-        match self.free.legendre().factor_gram(self.mechanics, &jacobian) {
-            Ok(gram) => Ok(Landing { q, impulse, gram }),
+        match self.free.legendre().factor_gram(self.mechanics, &jacobian, tally) {
+            Ok(gram) => Ok(Landing { q, impulse, gram, corrections }),
             Err(cause) => Err(StepError::Projection { t: self.t_end, cause: cause.into() }),
         }
     }
 
     /// Newton's iteration from `q = q₁(ℓ)`, with a fresh matrix for every correction. `previous` is the residual that the
-    /// last correction was made for, 0 if there was none.
+    /// last of the `corrections` so far was made for, 0 if there was none.
     fn iterate(
         &self,
+        corrections: usize,
         mut previous: S::PerConstraint<f64>,
         mut q: S::PerCoordinate<f64>,
         mut impulse: S::PerConstraint<f64>,
+        tally: &mut impl Tally,
     ) -> Result<Landing<S>, StepError> {
         let mut progress = Progress::after(relative_length::<S>(&previous, &self.scale(&q)));
         loop {
@@ -202,11 +221,14 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>> Span<'_, S, F> {
                 let failure = IterationFailure::Singular { correction: progress.corrections() + 1, matrix };
                 self.failed(failure, &residual, 0.0)
             })?;
+            if gram.is_fallback() {
+                tally.count_fallback();
+            }
             let scale = self.scale(&q);
             self.correct(&gram, &residual, &mut q, &mut impulse);
             let is_last = is_round_off_next::<S>(&residual, &previous, &scale);
             match progress.record(relative_length::<S>(&residual, &scale), is_last) {
-                Ok(true) => return self.landing(q, impulse),
+                Ok(true) => return self.landing(q, impulse, corrections + progress.corrections(), tally),
                 Ok(false) => previous = residual,
                 Err(failure) => {
                     let (residual, _) = self.constraints_at(&q);

@@ -66,6 +66,11 @@ where
             Self::Dense(dense) => dense.pivot_ratio(),
         }
     }
+
+    #[inline(always)]
+    fn is_fallback(&self) -> bool {
+        matches!(self, Self::Dense(_))
+    }
 }
 
 #[cold]

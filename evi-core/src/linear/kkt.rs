@@ -186,6 +186,12 @@ where
     pub(crate) fn pivot_ratio(&self) -> f64 {
         self.factors.pivot_ratio()
     }
+
+    /// Whether the pivoted dense solve has taken the place of the scene's own elimination.
+    #[inline(always)]
+    pub(crate) fn is_fallback(&self) -> bool {
+        self.factors.is_fallback()
+    }
 }
 
 /// The power of two next below `1/x`; 1 where `x` is zero or not a normal number.

@@ -43,6 +43,12 @@ pub trait Factorization<V, M>: Sized {
 
     /// Smallest pivot over largest, in `[0, 1]`: small values announce a singular matrix.
     fn pivot_ratio(&self) -> f64;
+
+    /// Whether the pivoted dense solve has taken the place of the scene's own elimination.
+    #[inline(always)]
+    fn is_fallback(&self) -> bool {
+        false
+    }
 }
 
 /// A matrix is singular to working precision.

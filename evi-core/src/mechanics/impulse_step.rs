@@ -23,7 +23,8 @@ use crate::system::MechanicalSystem;
 pub(crate) struct ImpulseStep<S: MechanicalSystem> {
     part: QuadraticPart<S>,
     half_h: f64,
-    /// `T`.
+    /// `T + ½h φᵀΩφ`: what is left of the kick once the whole force, not `U'`, has been applied. It is smaller by `(wh)²`, and so
+    /// is what its rounding does to symmetries that the force has exactly.
     kick: Rows<S>,
     /// `D`.
     drift: CoordinateMatrix<S, Full>,
@@ -44,11 +45,14 @@ impl<S: MechanicalSystem> ImpulseStep<S> {
         mollifier: Option<Mollifier>,
         h: f64,
     ) -> Result<Self, SingularMatrix> {
+        let half_h = 0.5 * h;
+        let filter = |k: usize| mollifier.map_or(1.0, |filter| filter.filter(flows[k].squared_phase()));
         Ok(Self {
-            half_h: 0.5 * h,
-            kick: modes.to_momenta(|k| flows[k].kick),
+            half_h,
+            kick: modes
+                .to_momenta(|k| flows[k].kick + half_h * filter(k) * filter(k) * flows[k].squared_frequency),
             drift: CoordinateMatrix::new(modes.to_positions(|k| flows[k].drift)),
-            filter: mollifier.map(|filter| modes.function(|k| filter.filter(flows[k].squared_phase()))),
+            filter: mollifier.map(|_| modes.function(filter)),
             legendre: ConstantLegendre::new(mechanics)?,
             part,
         })
@@ -63,13 +67,15 @@ impl<S: MechanicalSystem> ImpulseStep<S> {
         q: &S::PerCoordinate<f64>,
         p: &S::PerCoordinate<f64>,
     ) -> S::PerCoordinate<f64> {
+        let QuadraticPart { reference, multipliers, .. } = &self.part;
         let displacement = self.part.displacement(q);
         let linear = times::<S>(&self.kick, &displacement);
         let gradient = match &self.filter {
-            None => self.part.remaining_gradient(mechanics, t, &displacement),
+            None => mechanics.potential_gradient(t, q, multipliers),
             Some(filter) => {
                 let filtered = times::<S>(filter, &displacement);
-                let inner = self.part.remaining_gradient(mechanics, t, &filtered);
+                let x = Array::from_fn(|i| reference[i] + filtered[i]);
+                let inner = mechanics.potential_gradient(t, &x, multipliers);
                 let mut gradient = Array::from_fn(|_| 0.0);
                 add_transposed::<S>(filter, &inner, &mut gradient);
                 gradient

@@ -3,6 +3,7 @@
 use super::{AsScene, CoordinateMatrix, Mechanics, Projected};
 use crate::array::Array;
 use crate::linear::{Factorization, SingularMatrix};
+use crate::newton::Tally;
 use crate::system::{LagrangianGradient, MechanicalSystem};
 
 /// Kinetic energy of the velocities that are removed, relative to that of the motion, up to which one projection does: the
@@ -57,9 +58,14 @@ impl<S: MechanicalSystem> ConstantLegendre<S> {
         &self,
         mechanics: &Mechanics<S>,
         jacobian: &S::PerJacobianEntry<f64>,
+        tally: &mut impl Tally,
     ) -> Result<S::GramFactors, SingularMatrix> {
         let directions = mechanics.constraint_directions(jacobian, &self.inverse_mass);
-        S::GramFactors::factor(&mechanics.gram_matrix::<AsScene>(jacobian, &directions))
+        let gram = S::GramFactors::factor(&mechanics.gram_matrix::<AsScene>(jacobian, &directions))?;
+        if gram.is_fallback() {
+            tally.count_fallback();
+        }
+        Ok(gram)
     }
 
     /// Removes from the momentum `p` the impulse `Gᵀ N` that leaves the constraints, `G M⁻¹ Gᵀ N = G v + ∂φ/∂t`, with the

@@ -3,7 +3,7 @@
 use super::Mechanics;
 use crate::array::Array;
 use crate::linear::{FactoredKkt, SingularMatrix, constraint_index, unknowns};
-use crate::newton::{self, NotConverged};
+use crate::newton::{self, NotConverged, Tally};
 use crate::system::{LagrangianGradient, MechanicalSystem};
 
 /// A momentum with the constraint impulse removed, and the velocity that belongs to it.
@@ -49,12 +49,16 @@ impl<S: MechanicalSystem> Mechanics<S> {
         q: &S::PerCoordinate<f64>,
         momentum: &S::PerCoordinate<f64>,
         mut v: S::PerCoordinate<f64>,
+        tally: &mut impl Tally,
     ) -> Result<Projected<S>, ProjectionError> {
         let (_, jacobian) = S::constraint_derivatives(&self.constants, t, q);
         let mut impulse = S::PerConstraint::<f64>::from_fn(|_| 0.0);
         let mut correct = || -> Result<f64, ProjectionError> {
             let (gradient, hessian) = S::lagrangian_derivatives(&self.constants, t, q, &v);
             let kkt = self.mass_kkt(hessian.as_ref(), jacobian.as_ref()).factor()?;
+            if kkt.is_fallback() {
+                tally.count_fallback();
+            }
             let rate = self.constraint_rate(jacobian.as_ref(), &v);
             let mut correction = unknowns::<S>(|i| momentum[i] - gradient.momentum[i], |c| -rate[c]);
             kkt.solve(&mut correction);
@@ -162,7 +166,7 @@ impl<S: MechanicalSystem> Mechanics<S> {
         v: S::PerCoordinate<f64>,
     ) -> Result<Projected<S>, ProjectionError> {
         let momentum = S::lagrangian_gradient(&self.constants, t, q, &v).momentum;
-        self.project_momentum(t, q, &momentum, v)
+        self.project_momentum(t, q, &momentum, v, &mut ())
     }
 
     /// Accelerations and multipliers of the continuous motion at `(t, q, v)`: the index-1 equations
@@ -183,6 +187,18 @@ impl<S: MechanicalSystem> Mechanics<S> {
         q: &S::PerCoordinate<f64>,
         v: &S::PerCoordinate<f64>,
     ) -> Result<Acceleration<S>, SingularMatrix> {
+        self.acceleration_tallied(t, q, v, &mut ())
+    }
+
+    /// [`acceleration`](Self::acceleration) under a step.
+    #[inline]
+    pub(crate) fn acceleration_tallied(
+        &self,
+        t: f64,
+        q: &S::PerCoordinate<f64>,
+        v: &S::PerCoordinate<f64>,
+        tally: &mut impl Tally,
+    ) -> Result<Acceleration<S>, SingularMatrix> {
         let (LagrangianGradient { mut force, .. }, hessian) =
             S::lagrangian_derivatives(&self.constants, t, q, v);
         for entry in S::STRUCTURE.hessian.vq {
@@ -194,6 +210,9 @@ impl<S: MechanicalSystem> Mechanics<S> {
         let (_, jacobian) = S::constraint_derivatives(&self.constants, t, q);
         let curvature = S::constraint_curvature(&self.constants, t, q, v);
         let kkt = self.mass_kkt(hessian.as_ref(), jacobian.as_ref()).factor()?;
+        if kkt.is_fallback() {
+            tally.count_fallback();
+        }
         let mut solution = unknowns::<S>(|i| force[i], |c| -curvature[c]);
         kkt.solve(&mut solution);
         Ok(Acceleration {
