@@ -1,9 +1,9 @@
 //! Frequencies that vanish, modes that grow, coordinates that nothing holds.
 
-use evi_core::integrator::OneStep;
+use evi_core::integrator::{OneStep, Statistics};
 use evi_core::prelude::*;
 use evi_core::scheme::growth_rate;
-use evi_examples::{DoublePendulum, HarmonicOscillator};
+use evi_examples::{DoublePendulum, FermiPastaUlam, HarmonicOscillator, Start};
 use evi_tests::{largest_difference, observed_order};
 
 const UNIT: DoublePendulum = DoublePendulum::UNIT;
@@ -171,6 +171,32 @@ fn what_is_allowed_grows_as_foretold() {
     let grown = run.advance_to(10.0).expect("every step").q()[0];
     println!("{grown} for {}", (10.0 * growth_rate).cosh());
     assert!(grown > 5.0 && (grown / (10.0 * growth_rate).cosh() - 1.0).abs() < 1e-12, "{grown}");
+}
+
+/// Newton's corrections over a few steps.
+fn corrections<S, F, const N: usize>(system: S, scheme: F, start: Start<N>) -> u64
+where
+    S: MechanicalSystem<PerCoordinate<f64> = [f64; N]>,
+    F: Scheme<S>,
+{
+    let run = Simulation::new(system, scheme).start(start.q, start.v).expect("a start");
+    let mut run = run.with_tally(Statistics::default());
+    run.advance_to(0.5).expect("every step");
+    run.tally().corrections
+}
+
+/// On the ends of a step the equations are explicit but for the constraints.
+#[test]
+fn the_impulse_member_solves_for_multipliers_alone() {
+    let chain = FermiPastaUlam::STANDARD;
+    let (start, springs) = (chain.one_spring_excited(), chain.stiff_springs());
+    assert_eq!(corrections(chain, Evi::trapezoid(0.02).stiffness(springs), start), 0);
+    assert!(corrections(chain, Evi::midpoint(0.02).stiffness(springs), start) > 25);
+    let hanging = [0.0, -1.0, 0.0, -2.0];
+    let pendulum = |scheme| corrections(UNIT, scheme, UNIT.at_angles(0.3, 0.2));
+    let steps = pendulum(Evi::trapezoid(0.02).linearised_at(hanging));
+    println!("{steps} corrections in 25 steps");
+    assert!((50..75).contains(&steps));
 }
 
 #[test]
