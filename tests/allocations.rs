@@ -15,7 +15,7 @@ use evi_core::baseline::{Rattle, Rk4};
 use evi_core::generic::{GenericEvi, GenericSystem};
 use evi_core::prelude::*;
 use evi_examples::{
-    DoublePendulum, DrivenPendulum, HarmonicOscillator, Pendulum, SphericalPendulum, Start,
+    DoublePendulum, DrivenPendulum, FermiPastaUlam, HarmonicOscillator, Pendulum, SphericalPendulum, Start,
     StiffSpringPendulum,
 };
 use evi_tests::scenes::{DampedOscillator, PushedDumbbell};
@@ -138,6 +138,31 @@ fn no_exponential_step_of_a_constrained_scene_allocates() {
 }
 
 #[test]
+fn no_step_with_a_matrix_frequency_allocates() {
+    let hanging = [0.0, -1.0, 0.0, -2.0];
+    check(DOUBLE, Evi::trapezoid(0.01).linearised_at(hanging), mild());
+    check(DOUBLE, Evi::midpoint(0.01).linearised_at(hanging), mild());
+    check(DOUBLE, Evi::simpson(0.01).linearised_at(hanging).mollified(Mollifier::LongAverage), mild());
+    check(DOUBLE, Evi::trapezoid(0.01).stiffness([[1.0; 4]; 4]).about(hanging), mild());
+    let start = SPHERICAL.one_radian();
+    check(SPHERICAL, Evi::trapezoid(0.01).linearised_along(start.q, start.v), start);
+    let chain = FermiPastaUlam::STANDARD;
+    let springs = Evi::trapezoid(0.02).stiffness(chain.stiff_springs());
+    check(chain, springs, chain.one_spring_excited());
+    check(chain, springs.mollified(Mollifier::ShortAverage), chain.one_spring_excited());
+    check(chain, Evi::midpoint(0.02).stiffness(chain.stiff_springs()), chain.one_spring_excited());
+}
+
+#[test]
+fn no_step_with_fitted_weights_or_a_reference_allocates() {
+    check(OSCILLATOR, Evi::simpson(0.01).frequency(OSCILLATOR.frequency()).fitted(), SWING);
+    check(PENDULUM, Evi::simpson(0.01).frequency(OMEGA).about([0.1]), SWING);
+    let hanging = [0.0, -1.0, 0.0, -2.0];
+    check(DOUBLE, Evi::simpson(0.01).frequency(OMEGA).fitted().about(hanging), mild());
+    check(DOUBLE, Evi::midpoint(0.01).frequencies(PER_BODY).about(hanging), mild());
+}
+
+#[test]
 fn no_step_of_a_baseline_allocates() {
     check(DOUBLE, Rattle::new(0.01), mild());
     check(SPHERICAL, Rattle::new(0.01), SPHERICAL.one_radian());
@@ -167,6 +192,14 @@ fn no_step_with_forces_allocates() {
         }
     };
     assert_eq!(allocations(steps), 0);
+}
+
+#[test]
+fn no_step_of_a_composition_allocates() {
+    check(DOUBLE, Evi::midpoint(0.01).composed(Composition::kahan_li_8()), mild());
+    check(DOUBLE, Evi::simpson(0.01).frequencies(PER_BODY).composed(Composition::suzuki_4()), mild());
+    check(SPHERICAL, Rattle::new(0.01).composed(Composition::yoshida_6()), SPHERICAL.one_radian());
+    check(PENDULUM, Evi::simpson(0.01).composed(Composition::triple_jump_4()), SWING);
 }
 
 /// Takes 1,000 steps of the generic path and expects that none allocates.

@@ -2,45 +2,16 @@
 
 use evi_core::prelude::*;
 use evi_examples::{DoublePendulum, GRAVITY, Pendulum, SphericalPendulum, Start};
+use evi_tests::conservation::{angular_momentum, largest_change, there_and_back};
+use evi_tests::observed_order;
 use evi_tests::scenes::{
     ChargedSphericalPendulum, DoublePendulumInAngles, Dumbbell, KapitzaPendulum, RelativisticBead,
 };
-use evi_tests::{largest_difference, observed_order};
 
 mod reversibility {
     use super::*;
 
-    /// Distance from the start in `q` and `v` after `steps` steps there and as many back.
-    #[track_caller]
-    fn there_and_back<S, F, const N: usize>(
-        system: S,
-        scheme: impl Fn(f64) -> F,
-        start: Start<N>,
-        steps: usize,
-    ) -> f64
-    where
-        S: MechanicalSystem<PerCoordinate<f64> = [f64; N]> + Clone,
-        F: Scheme<S>,
-    {
-        const H: f64 = 0.02;
-        let mut there = Simulation::new(system.clone(), scheme(H)).start(start.q, start.v).expect("a start");
-        for _ in 0..steps {
-            there.advance().expect("a step");
-        }
-        let turn = there.state();
-        assert!(largest_difference(turn.q(), &start.q) > 0.1, "vacuous: nothing moves");
-        let mut back = Simulation::new(system, scheme(-H))
-            .start_at(turn.t(), *turn.q(), *turn.v())
-            .expect("the end of a run is a start");
-        for _ in 0..steps {
-            back.advance().expect("a step back");
-        }
-        let end = back.state();
-        assert!(end.t().abs() < 1e-12, "back at t = {}", end.t());
-        let distance = largest_difference(end.q(), &start.q).max(largest_difference(end.v(), &start.v));
-        println!("{}: {distance:e}", core::panic::Location::caller());
-        distance
-    }
+    const H: f64 = 0.02;
 
     /// 32 roundings of velocities of size 4 (8.9e-16): after 100 steps, grown by the motion; measured 5.5 of
     /// them.
@@ -52,7 +23,7 @@ mod reversibility {
         S: MechanicalSystem<PerCoordinate<f64> = [f64; N]> + Clone,
         F: Scheme<S>,
     {
-        let distance = there_and_back(system, scheme, start, 50);
+        let distance = there_and_back(system, scheme, start, H, 50);
         assert!(distance <= ROUND_OFF, "misses the start by {distance:e}");
     }
 
@@ -92,43 +63,13 @@ mod reversibility {
         let (system, start) = double_pendulum();
         let rule = Quadrature::interpolatory([0.0]).expect("a rule");
         assert!(!rule.is_symmetric());
-        let distance = there_and_back(system, |h| Evi::new(rule, h), start, 50);
+        let distance = there_and_back(system, |h| Evi::new(rule, h), start, H, 50);
         assert!(distance > 1e-2, "misses the start by {distance:e} only");
     }
 }
 
 mod momentum_maps {
     use super::*;
-
-    /// `x p_y − y p_x` of the body whose coordinates begin at `first`.
-    fn angular_momentum(q: &[f64], p: &[f64], first: usize) -> f64 {
-        q[first] * p[first + 1] - q[first + 1] * p[first]
-    }
-
-    /// Largest change of a function of `(q, p)` along a run.
-    #[track_caller]
-    fn largest_change<S, F, const N: usize>(
-        system: S,
-        scheme: F,
-        start: Start<N>,
-        steps: usize,
-        quantity: impl Fn(&[f64], &[f64]) -> f64,
-    ) -> f64
-    where
-        S: MechanicalSystem<PerCoordinate<f64> = [f64; N]>,
-        F: Scheme<S>,
-    {
-        let mut run = Simulation::new(system, scheme).start(start.q, start.v).expect("a start");
-        let at_start = quantity(run.state().q(), run.state().p());
-        assert!(at_start.abs() > 0.1, "vacuous: the quantity is {at_start}");
-        let mut largest = 0.0_f64;
-        for _ in 0..steps {
-            let state = run.advance().expect("a step");
-            largest = largest.max((quantity(state.q(), state.p()) - at_start).abs());
-        }
-        println!("{}: {largest:e}", core::panic::Location::caller());
-        largest
-    }
 
     /// Momenta of size 4 on an arm of 1, rounded at random in each of 10⁴ steps: `ε · 4 · √10⁴`; measured a
     /// quarter.

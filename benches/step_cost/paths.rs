@@ -65,6 +65,9 @@ pub(crate) fn all() -> Vec<Path> {
     path.hand_written(pendulum, move || HandWrittenDoublePendulum::new(&pendulum, start, H));
     path.derived(pendulum, start);
     path.other("Simpson, ω", move || specialised(pendulum, Evi::simpson(H).frequency(2.397), start));
+    path.other("linearised", move || {
+        specialised(pendulum, Evi::trapezoid(H).linearised_at([0.0, -1.0, 0.0, -2.0]), start)
+    });
     path.other("RATTLE", move || specialised(pendulum, Rattle::new(H), start));
     path.other("RK4", move || specialised(pendulum, Rk4::new(H), start));
 

@@ -67,9 +67,11 @@ pub mod __private;
 
 /// What a simulation needs: the derive, schemes, and runs.
 pub mod prelude {
-    pub use crate::integrator::{Evi, OneStep, Run, Scheme, Simulation, StartError, StepError};
+    pub use crate::integrator::{
+        Composition, Evi, OneStep, Run, Scheme, Simulation, StartError, StepError, Symmetric,
+    };
     pub use crate::mechanics::State;
-    pub use crate::scheme::{Frequency, Quadrature, SchemeError};
+    pub use crate::scheme::{Frequency, Mollifier, Quadrature, SchemeError};
     pub use crate::system::MechanicalSystem;
     #[cfg(feature = "derive")]
     pub use evi_macros::MechanicalSystem;

@@ -5,6 +5,7 @@
 
 pub mod double_pendulum;
 pub mod driven_pendulum;
+pub mod fermi_pasta_ulam;
 pub mod harmonic_oscillator;
 pub mod kapitza_pendulum;
 pub mod pendulum;
@@ -13,6 +14,7 @@ pub mod stiff_spring_pendulum;
 
 pub use double_pendulum::DoublePendulum;
 pub use driven_pendulum::DrivenPendulum;
+pub use fermi_pasta_ulam::FermiPastaUlam;
 pub use harmonic_oscillator::HarmonicOscillator;
 pub use kapitza_pendulum::KapitzaPendulum;
 pub use pendulum::Pendulum;

@@ -9,8 +9,8 @@ use clap::Parser;
 use evi_core::prelude::*;
 use evi_core::report::SystemReport;
 use evi_examples::{
-    DoublePendulum, DrivenPendulum, HarmonicOscillator, KapitzaPendulum, Pendulum, SphericalPendulum,
-    StiffSpringPendulum,
+    DoublePendulum, DrivenPendulum, FermiPastaUlam, HarmonicOscillator, KapitzaPendulum, Pendulum,
+    SphericalPendulum, StiffSpringPendulum,
 };
 
 /// Equations, structure and generated code of a scene of the gallery.
@@ -39,9 +39,10 @@ struct Scene {
     source: Option<&'static str>,
 }
 
-const SCENES: [Scene; 7] = [
+const SCENES: [Scene; 8] = [
     Scene::of::<DoublePendulum>(),
     Scene::of::<DrivenPendulum>(),
+    Scene::of::<FermiPastaUlam>(),
     Scene::of::<HarmonicOscillator>(),
     Scene::of::<KapitzaPendulum>(),
     Scene::of::<Pendulum>(),

@@ -1,6 +1,10 @@
 //! What several tests need: orders of convergence, an integrator that shares nothing with evi-core, certified
 //! reference numbers, scenes beside the gallery, and random numbers that are the same on every machine.
 
+pub mod conservation;
+pub mod convergence;
+pub mod matrix_action;
+pub mod motions;
 pub mod references;
 pub mod scenes;
 pub mod tangent;
@@ -62,6 +66,55 @@ pub fn integrate_by_hand<const N: usize>(
         }
     }
     (q, v)
+}
+
+/// Positions and velocities at `t_end` from time 0 by extrapolation of Gragg's modified midpoint rule to order 16 (Hairer, Nørsett,
+/// Wanner, Solving ODEs I, sec. II.9), for accelerations written by hand: a reference at round-off.
+pub fn extrapolate_by_hand<const N: usize>(
+    acceleration: impl Fn(f64, &[f64; N], &[f64; N]) -> [f64; N],
+    start: ([f64; N], [f64; N]),
+    t_end: f64,
+    steps: u32,
+) -> ([f64; N], [f64; N]) {
+    /// Substeps of the columns.
+    const SUBSTEPS: [u32; 8] = [2, 4, 6, 8, 10, 12, 14, 16];
+    type Point<const N: usize> = ([f64; N], [f64; N]);
+    let plus = |(q, v): &Point<N>, factor: f64, (dq, dv): &Point<N>| -> Point<N> {
+        (core::array::from_fn(|i| q[i] + factor * dq[i]), core::array::from_fn(|i| v[i] + factor * dv[i]))
+    };
+    let rate = |t: f64, (q, v): &Point<N>| -> Point<N> { (*v, acceleration(t, q, v)) };
+    let h = t_end / f64::from(steps);
+    // The increment of a step: extrapolated itself, so that the roundings of the columns are those of a small number.
+    let increment = |t: f64, start: &Point<N>, n: u32| -> Point<N> {
+        let substep = h / f64::from(n);
+        let nothing = ([0.0; N], [0.0; N]);
+        let (mut previous, mut current) = (nothing, plus(&nothing, substep, &rate(t, start)));
+        for k in 1..n {
+            let at = rate(t + f64::from(k) * substep, &plus(start, 1.0, &current));
+            (previous, current) = (current, plus(&previous, 2.0 * substep, &at));
+        }
+        // Gragg's smoothing.
+        let at_end = rate(t + h, &plus(start, 1.0, &current));
+        let mean = plus(&current, 1.0, &previous);
+        plus(&nothing, 0.5, &plus(&mean, substep, &at_end))
+    };
+    let mut point = start;
+    for step in 0..steps {
+        let t = f64::from(step) * h;
+        let mut row: Vec<Point<N>> = Vec::new();
+        for (j, &n) in SUBSTEPS.iter().enumerate() {
+            let mut column = increment(t, &point, n);
+            for k in 0..j {
+                let ratio = (f64::from(n) / f64::from(SUBSTEPS[j - 1 - k])).powi(2);
+                let coarser = core::mem::replace(&mut row[k], column);
+                let difference = plus(&column, -1.0, &coarser);
+                column = plus(&column, 1.0 / (ratio - 1.0), &difference);
+            }
+            row.push(column);
+        }
+        point = plus(&point, 1.0, &row[SUBSTEPS.len() - 1]);
+    }
+    point
 }
 
 /// SplitMix64 (Steele, Lea, Flood, OOPSLA 2014): the same numbers everywhere for a seed.

@@ -34,6 +34,9 @@ impl DoublePendulumInAngles {
     /// A swing of moderate size with both rates nonzero.
     pub const MODERATE: Start<2> = Start { q: [0.8, -0.3], v: [0.5, 1.1] };
 
+    /// A smaller swing, on which errors of high order settle early and keep their sign.
+    pub const GENTLE: Start<2> = Start { q: [0.5, 0.4], v: [-0.5, 0.6] };
+
     /// The same pendulum with constraints.
     pub const fn constrained(&self) -> DoublePendulum {
         let Self { m1, m2, l1, l2, g } = *self;

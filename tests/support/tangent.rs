@@ -103,59 +103,20 @@ impl ConstraintDerivatives {
     }
 }
 
-/// The discrete Lagrangian of a scheme, as a formula: nodes, weights, and curves per coordinate.
-pub struct Action {
-    h: f64,
-    weights: Vec<f64>,
-    offsets: Vec<f64>,
-    /// By node, then coordinate.
-    curves: Vec<Vec<NodeCoefficients>>,
-}
-
-impl Action {
-    /// On the nodes of `rule`, with one frequency per coordinate, for steps of size `h`.
-    pub fn new<const K: usize, const N: usize>(
-        rule: &Quadrature<K>,
-        frequencies: [Frequency; N],
-        h: f64,
-    ) -> Self {
-        let curves = rule
-            .offsets()
-            .iter()
-            .map(|&offset| frequencies.map(|f| NodeCoefficients::new(f, h, offset)).to_vec())
-            .collect();
-        Self { h, weights: rule.weights().to_vec(), offsets: rule.offsets().to_vec(), curves }
-    }
-
+/// The discrete Lagrangian of a scheme, from which its step follows.
+pub trait DiscreteAction {
     /// Gradient and Hessian of `L_d` in `(q₀, q₁)`.
-    pub fn derivatives(
+    fn derivatives(
         &self,
         system: &impl GenericSystem,
         t: f64,
         q0: &[f64],
         q1: &[f64],
-    ) -> (DVector<f64>, DMatrix<f64>) {
-        let n = q0.len();
-        let number = HyperDual64::from;
-        derivatives(&[q0, q1].concat(), |ends| {
-            let mut action = number(0.0);
-            for (node, curves) in self.curves.iter().enumerate() {
-                let (mut x, mut v) = (vec![number(0.0); n], vec![number(0.0); n]);
-                for (i, c) in curves.iter().enumerate() {
-                    let (s, d) = ((ends[i] + ends[n + i]) * 0.5, ends[n + i] - ends[i]);
-                    x[i] = s * c.even + d * c.odd;
-                    v[i] = (s * c.even_rate + d * c.odd_rate) / self.h;
-                }
-                let node_time = number(t + (0.5 + self.offsets[node]) * self.h);
-                action += system.lagrangian(node_time, &x, &v) * (self.weights[node] * self.h);
-            }
-            action
-        })
-    }
+    ) -> (DVector<f64>, DMatrix<f64>);
 
     /// `DΨ`, the `2n × 2n` derivative of the step from `start` to `end` in `(q, p)`.
     #[track_caller]
-    pub fn tangent_map<S: MechanicalSystem + GenericSystem>(
+    fn tangent_map<S: MechanicalSystem + GenericSystem>(
         &self,
         system: &S,
         start: &State<S>,
@@ -206,6 +167,58 @@ impl Action {
     }
 }
 
+/// The discrete Lagrangian of a scheme, as a formula: nodes, weights, and curves per coordinate.
+pub struct Action {
+    h: f64,
+    weights: Vec<f64>,
+    offsets: Vec<f64>,
+    /// By node, then coordinate.
+    curves: Vec<Vec<NodeCoefficients>>,
+}
+
+impl Action {
+    /// On the nodes of `rule`, with one frequency per coordinate, for steps of size `h`.
+    pub fn new<const K: usize, const N: usize>(
+        rule: &Quadrature<K>,
+        frequencies: [Frequency; N],
+        h: f64,
+    ) -> Self {
+        let curves = rule
+            .offsets()
+            .iter()
+            .map(|&offset| frequencies.map(|f| NodeCoefficients::new(f, h, offset)).to_vec())
+            .collect();
+        Self { h, weights: rule.weights().to_vec(), offsets: rule.offsets().to_vec(), curves }
+    }
+}
+
+impl DiscreteAction for Action {
+    fn derivatives(
+        &self,
+        system: &impl GenericSystem,
+        t: f64,
+        q0: &[f64],
+        q1: &[f64],
+    ) -> (DVector<f64>, DMatrix<f64>) {
+        let n = q0.len();
+        let number = HyperDual64::from;
+        derivatives(&[q0, q1].concat(), |ends| {
+            let mut action = number(0.0);
+            for (node, curves) in self.curves.iter().enumerate() {
+                let (mut x, mut v) = (vec![number(0.0); n], vec![number(0.0); n]);
+                for (i, c) in curves.iter().enumerate() {
+                    let (s, d) = ((ends[i] + ends[n + i]) * 0.5, ends[n + i] - ends[i]);
+                    x[i] = s * c.even + d * c.odd;
+                    v[i] = (s * c.even_rate + d * c.odd_rate) / self.h;
+                }
+                let node_time = number(t + (0.5 + self.offsets[node]) * self.h);
+                action += system.lagrangian(node_time, &x, &v) * (self.weights[node] * self.h);
+            }
+            action
+        })
+    }
+}
+
 /// Vectors tangent to `T*N` at a state, in two pictures of the same columns.
 pub struct TangentSpace {
     /// Orthonormal `(δq, δp)`.
@@ -246,4 +259,19 @@ impl TangentSpace {
 pub fn form(w: &DMatrix<f64>) -> DMatrix<f64> {
     let n = w.nrows() / 2;
     w.rows(0, n).transpose() * w.rows(n, n) - w.rows(n, n).transpose() * w.rows(0, n)
+}
+
+/// How much the symplectic form changes from the columns of `before` to their images `after`, in roundings of `‖DΨ‖²`.
+///
+/// # Panics
+/// If the form vanishes or nothing moves.
+#[track_caller]
+pub fn symplectic_defect(before: &DMatrix<f64>, after: &DMatrix<f64>) -> f64 {
+    let (form_before, form_after) = (form(before), form(after));
+    assert!(form_before.amax() > 0.1, "vacuous: the form vanishes");
+    assert!((after - before).amax() > 0.01, "vacuous: nothing moves");
+    let norm = after.clone().svd(false, false).singular_values.max();
+    let roundings = (form_after - form_before).amax() / (f64::EPSILON * norm * norm);
+    println!("{}: {roundings:.1} roundings, norm {norm:.2}", core::panic::Location::caller());
+    roundings
 }

@@ -1,9 +1,9 @@
 //! RATTLE, in its classical velocity form.
 
 use crate::array::Array;
-use crate::integrator::{IterationFailure, OneStep, Scheme, StepError, Tally};
+use crate::integrator::{IterationFailure, OneStep, Scheme, StepError, Symmetric, Tally};
 use crate::linear::{Factorization, SingularMatrix, largest_magnitude};
-use crate::mechanics::{CoordinateMatrix, ForcePoint, Mechanics, ProjectionError, State, relative};
+use crate::mechanics::{AsScene, CoordinateMatrix, ForcePoint, Mechanics, ProjectionError, State, relative};
 use crate::newton::{self, Converged};
 use crate::scheme::{SchemeError, checked_step_size};
 use crate::system::MechanicalSystem;
@@ -27,6 +27,20 @@ impl Rattle {
     /// Steps of size `h`.
     pub const fn new(h: f64) -> Self {
         Self { h }
+    }
+}
+
+impl Symmetric for Rattle {
+    fn step_size(&self) -> f64 {
+        self.h
+    }
+
+    fn with_step_size(&self, h: f64) -> Self {
+        Self { h }
+    }
+
+    fn check_symmetry(&self) -> Result<(), SchemeError> {
+        Ok(())
     }
 }
 
@@ -111,7 +125,7 @@ impl<S: MechanicalSystem> RattleStep<S> {
         let iteration = newton::iterate(|correction| {
             let (mut impulse, jacobian) = S::constraint_derivatives(constants, t, &q);
             constraint_residual = largest_magnitude(impulse.as_ref().iter().copied());
-            let gram = S::GramFactors::factor(&self.mechanics.gram_matrix(&jacobian, &directions))
+            let gram = S::GramFactors::factor(&self.mechanics.gram_matrix::<AsScene>(&jacobian, &directions))
                 .map_err(|matrix| IterationFailure::Singular { correction, matrix })?;
             smallest_pivot_ratio = smallest_pivot_ratio.min(gram.pivot_ratio());
             if gram.is_fallback() {
@@ -150,7 +164,7 @@ impl<S: MechanicalSystem> RattleStep<S> {
         let (_, jacobian) = S::constraint_derivatives(&self.mechanics.constants, t, q);
         let directions = self.mechanics.constraint_directions(&jacobian, &self.inverse_mass);
         let mut impulse = self.mechanics.constraint_rate(jacobian.as_ref(), v);
-        let gram = S::GramFactors::factor(&self.mechanics.gram_matrix(&jacobian, &directions))?;
+        let gram = S::GramFactors::factor(&self.mechanics.gram_matrix::<AsScene>(&jacobian, &directions))?;
         if gram.is_fallback() {
             tally.count_fallback();
         }

@@ -1,7 +1,8 @@
 //! Exponential variational integrators.
 
+use super::curves::check_soft_coordinates;
 use super::multipliers::MultiplierStep;
-use super::{IterationFailure, OneStep, Scheme, StepError};
+use super::{IterationFailure, OneStep, Scheme, StepError, Symmetric};
 use crate::array::Array;
 use crate::linear::{constraint_index, largest_magnitude};
 use crate::mechanics::{
@@ -22,9 +23,10 @@ use crate::system::MechanicalSystem;
 ///
 /// On straight curves every linear and angular momentum of the scene is preserved. A frequency keeps only symmetries that act
 /// linearly, such as rotations about the origin: a constant is not in the span of `cos ωt, sin ωt`, so that with `K ≥ 2`
-/// nodes motions depend on where the origin is. Give a frequency to coordinates that oscillate about 0 with about that frequency,
-/// and [`Frequency::ZERO`] to those that translate, rotate, or are soft: with `K ≥ 2` a free coordinate grows at the rate
-/// `ω² h √(Σ wⱼ σⱼ²)`.
+/// nodes motions depend on where the origin is. Give a frequency to coordinates that oscillate about 0, or about the reference of
+/// [`about`](Self::about), with about that frequency, and [`Frequency::ZERO`] to those that translate, rotate, or are soft: with `K ≥ 2`
+/// a free coordinate grows at the rate `ω² |h| √(Σ wⱼ σⱼ²)` ([`growth_rate`](crate::scheme::growth_rate)). Where nothing in the scene holds a
+/// coordinate this is refused. Where constraints bend the motion, a scalar frequency gains nothing; [`linearised_at`](Self::linearised_at) does.
 ///
 /// ```
 /// use evi_core::prelude::*;
@@ -34,15 +36,16 @@ use crate::system::MechanicalSystem;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Evi<const K: usize, F = Linear> {
-    quadrature: Quadrature<K>,
-    h: f64,
-    interpolant: F,
+    pub(super) quadrature: Quadrature<K>,
+    pub(super) h: f64,
+    pub(super) interpolant: F,
+    pub(super) allows_soft_modes: bool,
 }
 
 impl Evi<1> {
     /// The implicit midpoint member, `S = 1`.
     pub const fn midpoint(h: f64) -> Self {
-        Self { quadrature: Quadrature::midpoint(), h, interpolant: Linear }
+        Self::new(Quadrature::midpoint(), h)
     }
 }
 
@@ -57,12 +60,12 @@ impl<const K: usize> Evi<K> {
     /// The member on the nodes of `quadrature`, with linear interpolation, for steps of size `h` (units of time;
     /// negative steps go back in time).
     pub const fn new(quadrature: Quadrature<K>, h: f64) -> Self {
-        Self { quadrature, h, interpolant: Linear }
+        Self { quadrature, h, interpolant: Linear, allows_soft_modes: false }
     }
 
     /// Interpolates every coordinate with the same frequency; for scenes in which all coordinates oscillate about 0.
     pub fn frequency(self, frequency: impl Into<Frequency>) -> Evi<K, Frequency> {
-        Evi { quadrature: self.quadrature, h: self.h, interpolant: frequency.into() }
+        self.on(frequency.into())
     }
 
     /// Interpolates every coordinate with the frequency that the scene gives it by an item `frequency(..)`, on straight lines
@@ -85,13 +88,34 @@ impl<const K: usize> Evi<K> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn scene_frequencies(self) -> Evi<K, SceneFrequencies> {
-        Evi { quadrature: self.quadrature, h: self.h, interpolant: SceneFrequencies }
+        self.on(SceneFrequencies)
     }
 
     /// Interpolates coordinate `i` with `frequencies[i]`, [`Frequency::ZERO`] on a straight line. Coordinates of one body should
     /// share theirs.
     pub fn frequencies<const N: usize>(self, frequencies: [Frequency; N]) -> Evi<K, [Frequency; N]> {
-        Evi { quadrature: self.quadrature, h: self.h, interpolant: frequencies }
+        self.on(frequencies)
+    }
+}
+
+impl Evi<2> {
+    /// The member on the trapezoidal rule, `S = 2`; the impulse method with [`stiffness`](Self::stiffness).
+    pub fn trapezoid(h: f64) -> Self {
+        Self::new(Quadrature::uniform(), h)
+    }
+}
+
+impl<const K: usize, F: Clone> Symmetric for Evi<K, F> {
+    fn step_size(&self) -> f64 {
+        self.h
+    }
+
+    fn with_step_size(&self, h: f64) -> Self {
+        Self { h, ..self.clone() }
+    }
+
+    fn check_symmetry(&self) -> Result<(), SchemeError> {
+        self.quadrature.check_symmetry()
     }
 }
 
@@ -100,10 +124,14 @@ impl<S: MechanicalSystem, const K: usize, F: Interpolant<S>> Scheme<S> for Evi<K
 
     fn prepare(&self, mechanics: Mechanics<S>) -> Result<Self::Step, SchemeError> {
         let h = checked_step_size(self.h)?;
-        let table = self.interpolant.table(&mechanics.constants, &self.quadrature, h)?;
-        let action = DiscreteLagrangian::new(mechanics, table, self.quadrature, h);
+        let quadrature = self.interpolant.rule(&mechanics.constants, &self.quadrature, h)?;
+        let table = self.interpolant.table(&mechanics.constants, &quadrature, h)?;
+        if !self.allows_soft_modes {
+            check_soft_coordinates::<S, K>(&self.interpolant, &mechanics.constants, &quadrature, h)?;
+        }
+        let action = DiscreteLagrangian::new(mechanics, table, quadrature, h);
         // Where M or A is singular, the constraints are needed to determine the motion: the general step uses them.
-        let folded = if FoldedStep::<S>::EXISTS { FoldedStep::new(&action).ok() } else { None };
+        let folded = if FoldedStep::<S, F>::EXISTS { FoldedStep::new(&action).ok() } else { None };
         let legendre =
             if ConstantLegendre::<S>::EXISTS { ConstantLegendre::new(&action.mechanics).ok() } else { None };
         Ok(EviStep { action, folded: folded.map(MultiplierStep::new), legendre })
@@ -114,7 +142,7 @@ impl<S: MechanicalSystem, const K: usize, F: Interpolant<S>> Scheme<S> for Evi<K
 pub struct EviStep<S: MechanicalSystem, F: Interpolant<S>, const K: usize> {
     action: DiscreteLagrangian<S, F::Table<K>, K>,
     /// The step of a quadratic Lagrangian.
-    folded: Option<MultiplierStep<S>>,
+    folded: Option<MultiplierStep<S, FoldedStep<S, F>>>,
     /// The Legendre transform of a constant mass matrix.
     legendre: Option<ConstantLegendre<S>>,
 }
@@ -133,10 +161,10 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> OneStep<S> for EviS
 
     #[inline]
     fn advance(&mut self, state: &mut State<S>, tally: &mut impl Tally) -> Result<(), StepError> {
-        if FoldedStep::<S>::EXISTS
+        if FoldedStep::<S, F>::EXISTS
             && let Some(folded) = &mut self.folded
         {
-            return folded.advance(&self.action.mechanics, F::IS_STRAIGHT, self.action.h(), state, tally);
+            return folded.advance(&self.action.mechanics, self.action.h(), state, tally);
         }
         let h = self.action.h();
         let start_of_curve = Array::from_fn(|i| h * state.v[i]);

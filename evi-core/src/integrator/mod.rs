@@ -4,7 +4,10 @@
 //! [`OneStep`] map that holds everything that is constant for the run. A [`Simulation`] joins a scene with a scheme;
 //! a [`Run`] is a simulation at a state.
 
+mod composition;
+mod curves;
 mod evi;
+mod matrix_evi;
 mod multipliers;
 mod run;
 mod simulation;
@@ -12,7 +15,11 @@ mod simulation;
 mod trajectory;
 
 pub use crate::newton::{Fallbacks, Statistics, Tally};
+pub use composition::{Composed, ComposedStep, Composition, Symmetric};
 pub use evi::{Evi, EviStep};
+pub use matrix_evi::{
+    LinearisedAlong, LinearisedAt, MatrixEvi, MatrixEviStep, QuadraticModel, StepMode, Stiffness,
+};
 pub use run::Run;
 #[cfg(feature = "generic")]
 pub(crate) use run::steps_between;

@@ -1,23 +1,23 @@
-//! The step of a folded scene: Newton's iteration on the multipliers alone.
+//! A kick, a drift and a kick with constraints: Newton's iteration on the multipliers alone.
 //!
-//! In: a [`FoldedStep`], whose end point is affine in the impulse `ℓ = Λ/h` of the constraint force. Out: the `ℓ` for which
+//! In: a [`KickDriftKick`], whose end point is affine in the impulse `ℓ = Λ/h` of the constraint force. Out: the `ℓ` for which
 //! `φ(q₁(ℓ)) = 0`, and the state there. From the impulse that the previous steps predict, two corrections with one matrix
-//! `h G₁ A⁻¹ G₀ᵀ` do, as a rule; where they do not, Newton's iteration goes on with a fresh matrix for each.
+//! `G₁ D G₀ᵀ` do, as a rule; where they do not, Newton's iteration goes on with a fresh matrix for each.
 
 use super::{IterationFailure, StepError};
 use crate::array::Array;
 use crate::linear::{Factorization, largest_magnitude};
-use crate::mechanics::{Directions, FoldedStep, Mechanics, Projected, State};
+use crate::mechanics::{Coupling, Directions, KickDriftKick, Mechanics, Projected, State};
 use crate::newton::{self, Progress, Tally};
 use crate::system::MechanicalSystem;
 
 /// Corrections with one matrix that do, as a rule.
 const CHORDS: usize = 2;
 
-/// A folded step with the impulses that it has needed so far. They affect the number of corrections and the last bits of
+/// A step without its constraint forces, with the impulses that it has needed so far. They affect the number of corrections and the last bits of
 /// a state, nothing else.
-pub(crate) struct MultiplierStep<S: MechanicalSystem> {
-    folded: FoldedStep<S>,
+pub(crate) struct MultiplierStep<S: MechanicalSystem, F> {
+    free: F,
     /// The first guess of the next step: what a cubic through the last four impulses predicts.
     predicted: S::PerConstraint<f64>,
     /// Impulses of the last three steps, newest first.
@@ -28,18 +28,18 @@ pub(crate) struct MultiplierStep<S: MechanicalSystem> {
 const SHORT: f64 = 1.0 / (1_u64 << 40) as f64;
 
 /// The motion of one step as a function of the impulse.
-struct Span<'a, S: MechanicalSystem> {
+struct Span<'a, S: MechanicalSystem, F> {
     mechanics: &'a Mechanics<S>,
-    folded: &'a FoldedStep<S>,
+    free: &'a F,
     t_start: f64,
     t_end: f64,
     /// `q₀`.
     start: &'a S::PerCoordinate<f64>,
-    /// `h A⁻¹ p½`, without constraint forces.
+    /// `D p½`, without constraint forces.
     free_difference: S::PerCoordinate<f64>,
     /// Varying entries of `G₀`.
     jacobian: S::PerJacobianEntry<f64>,
-    /// `h A⁻¹ G₀ᵀ`.
+    /// `D G₀ᵀ`.
     directions: Directions<S>,
 }
 
@@ -53,10 +53,10 @@ struct Landing<S: MechanicalSystem> {
     corrections: usize,
 }
 
-impl<S: MechanicalSystem> MultiplierStep<S> {
-    pub(crate) fn new(folded: FoldedStep<S>) -> Self {
+impl<S: MechanicalSystem, F: KickDriftKick<S>> MultiplierStep<S, F> {
+    pub(crate) fn new(free: F) -> Self {
         let none = S::PerConstraint::<f64>::from_fn(|_| 0.0);
-        Self { folded, predicted: none.clone(), previous: [none.clone(), none.clone(), none] }
+        Self { free, predicted: none.clone(), previous: [none.clone(), none.clone(), none] }
     }
 
     /// Overwrites `state` with the state one step of size `h` later.
@@ -64,33 +64,31 @@ impl<S: MechanicalSystem> MultiplierStep<S> {
     pub(crate) fn advance(
         &mut self,
         mechanics: &Mechanics<S>,
-        is_straight: bool,
         h: f64,
         state: &mut State<S>,
         tally: &mut impl Tally,
     ) -> Result<(), StepError> {
-        let folded = &self.folded;
+        let free = &self.free;
         let t = state.t + h;
-        let mut p = folded.kicked_at_start(is_straight, &state.q, &state.p);
-        let free_difference = folded.drift.times(|i| p[i]);
+        let mut p = free.kicked_at_start(mechanics, state.t, &state.q, &state.p);
+        let free_difference = free.drift().times(|i| p[i]);
         if S::N_CONSTRAINTS == 0 {
             let q = Array::from_fn(|i| state.q[i] + free_difference[i]);
-            p = folded.kicked_at_end(is_straight, &q, &p);
-            return state.replace(t, q, folded.legendre.velocity(&p), p);
+            p = free.kicked_at_end(mechanics, t, &q, &p);
+            return state.replace(t, q, free.legendre().velocity(&p), p);
         }
         let (_, jacobian) = S::constraint_derivatives(&mechanics.constants, state.t, &state.q);
-        let directions = mechanics.constraint_directions(&jacobian, &folded.drift);
+        let directions = mechanics.constraint_directions(&jacobian, free.drift());
         let (t_start, start) = (state.t, &state.q);
-        let span =
-            Span { mechanics, folded, t_start, t_end: t, start, free_difference, jacobian, directions };
+        let span = Span { mechanics, free, t_start, t_end: t, start, free_difference, jacobian, directions };
         let Landing { q, impulse, gram, corrections } = span.solve(self.predicted.clone(), tally)?;
         tally.count_corrections(corrections);
         mechanics.subtract_constraint_force(span.jacobian.as_ref(), impulse.as_ref(), p.as_mut());
-        p = folded.kicked_at_end(is_straight, &q, &p);
+        p = free.kicked_at_end(mechanics, t, &q, &p);
 
         let (_, jacobian) = S::constraint_derivatives(&mechanics.constants, t, &q);
         let expected = self.expected_end_impulse(&impulse);
-        let Projected { v, p } = folded.legendre.project(mechanics, &gram, &jacobian, &expected, p);
+        let Projected { v, p } = free.legendre().project(mechanics, &gram, &jacobian, &expected, p);
         state.replace(t, q, v, p)?;
         self.remember(impulse);
         Ok(())
@@ -113,7 +111,7 @@ impl<S: MechanicalSystem> MultiplierStep<S> {
 }
 
 // Written out, since a derive would demand the same of `S`.
-impl<S: MechanicalSystem> Clone for Span<'_, S> {
+impl<S: MechanicalSystem, F> Clone for Span<'_, S, F> {
     #[inline(always)]
     fn clone(&self) -> Self {
         Self {
@@ -125,7 +123,10 @@ impl<S: MechanicalSystem> Clone for Span<'_, S> {
     }
 }
 
-impl<S: MechanicalSystem> Span<'_, S> {
+/// Solver with `G₁ D G₀ᵀ`.
+type DriftGram<S, F> = <<F as KickDriftKick<S>>::Coupling as Coupling<S>>::GramFactors;
+
+impl<S: MechanicalSystem, F: KickDriftKick<S>> Span<'_, S, F> {
     /// Solves `φ(q₁(ℓ)) = 0` from the guess `impulse`.
     ///
     /// What follows the two corrections takes a copy of `self`, which therefore need not lie in memory until then. The
@@ -139,8 +140,8 @@ impl<S: MechanicalSystem> Span<'_, S> {
     ) -> Result<Landing<S>, StepError> {
         let mut q = self.end(&impulse);
         let (first, jacobian) = self.constraints_at(&q);
-        let matrix = self.mechanics.gram_matrix(&jacobian, &self.directions);
-        let Ok(chord) = S::GramFactors::factor(&matrix) else { return self.clone().solve_anew(tally) };
+        let matrix = self.mechanics.gram_matrix::<F::Coupling>(&jacobian, &self.directions);
+        let Ok(chord) = DriftGram::<S, F>::factor(&matrix) else { return self.clone().solve_anew(tally) };
         if chord.is_fallback() {
             tally.count_fallback();
         }
@@ -150,7 +151,7 @@ impl<S: MechanicalSystem> Span<'_, S> {
         let displacement = Array::from_fn(|c| matrix[c][c] * impulse[c]);
         if is_round_off_next::<S>(&second, &first, &displacement)
             && (0..S::N_CONSTRAINTS).all(|c| second[c].abs() <= SHORT * displacement[c].abs())
-            && let Ok(gram) = self.folded.legendre.factor_gram(self.mechanics, &jacobian, tally)
+            && let Ok(gram) = self.free.legendre().factor_gram(self.mechanics, &jacobian, tally)
         {
             return Ok(Landing { q, impulse, gram, corrections: CHORDS });
         }
@@ -196,7 +197,7 @@ impl<S: MechanicalSystem> Span<'_, S> {
         tally: &mut impl Tally,
     ) -> Result<Landing<S>, StepError> {
         let (_, jacobian) = self.constraints_at(&q);
-        match self.folded.legendre.factor_gram(self.mechanics, &jacobian, tally) {
+        match self.free.legendre().factor_gram(self.mechanics, &jacobian, tally) {
             Ok(gram) => Ok(Landing { q, impulse, gram, corrections }),
             Err(cause) => Err(StepError::Projection { t: self.t_end, cause: cause.into() }),
         }
@@ -215,12 +216,11 @@ impl<S: MechanicalSystem> Span<'_, S> {
         let mut progress = Progress::after(relative_length::<S>(&previous, &self.scale(&q)));
         loop {
             let (residual, jacobian) = self.constraints_at(&q);
-            let gram = S::GramFactors::factor(&self.mechanics.gram_matrix(&jacobian, &self.directions))
-                .map_err(|matrix| {
-                    let failure =
-                        IterationFailure::Singular { correction: progress.corrections() + 1, matrix };
-                    self.failed(failure, &residual, 0.0)
-                })?;
+            let matrix = self.mechanics.gram_matrix::<F::Coupling>(&jacobian, &self.directions);
+            let gram = DriftGram::<S, F>::factor(&matrix).map_err(|matrix| {
+                let failure = IterationFailure::Singular { correction: progress.corrections() + 1, matrix };
+                self.failed(failure, &residual, 0.0)
+            })?;
             if gram.is_fallback() {
                 tally.count_fallback();
             }
@@ -255,27 +255,27 @@ impl<S: MechanicalSystem> Span<'_, S> {
         S::constraint_derivatives(&self.mechanics.constants, self.t_end, q)
     }
 
-    /// `q₁(ℓ) = q₀ − h A⁻¹ G₀ᵀ ℓ + d_free`; the difference comes last, since it is known last.
+    /// `q₁(ℓ) = q₀ − D G₀ᵀ ℓ + d_free`; the difference comes last, since it is known last.
     #[inline(always)]
     fn end(&self, impulse: &S::PerConstraint<f64>) -> S::PerCoordinate<f64> {
         let mut end = self.start.clone();
-        subtract::<S>(&self.directions, impulse, &mut end);
+        subtract::<S, F::Coupling>(&self.directions, impulse, &mut end);
         Array::from_fn(|i| end[i] + self.free_difference[i])
     }
 
     /// Applies the correction for `residual` to the impulse and to `q = q₁(ℓ)`. The derivative of `φ(q₁(ℓ))` is
-    /// `−h G₁ A⁻¹ G₀ᵀ`, the `matrix` but for the sign.
+    /// `−G₁ D G₀ᵀ`, the `matrix` but for the sign.
     #[inline(always)]
     fn correct(
         &self,
-        matrix: &S::GramFactors,
+        matrix: &DriftGram<S, F>,
         residual: &S::PerConstraint<f64>,
         q: &mut S::PerCoordinate<f64>,
         impulse: &mut S::PerConstraint<f64>,
     ) {
         let mut correction = residual.clone();
         matrix.solve(&mut correction);
-        subtract::<S>(&self.directions, &correction, q);
+        subtract::<S, F::Coupling>(&self.directions, &correction, q);
         for c in 0..S::N_CONSTRAINTS {
             impulse[c] += correction[c];
         }
@@ -319,12 +319,12 @@ fn relative_length<S: MechanicalSystem>(
 
 /// Subtracts `Σ directions[c] y[c]` from `x`.
 #[inline]
-fn subtract<S: MechanicalSystem>(
+fn subtract<S: MechanicalSystem, C: Coupling<S>>(
     directions: &Directions<S>,
     y: &S::PerConstraint<f64>,
     x: &mut S::PerCoordinate<f64>,
 ) {
-    if S::STRUCTURE.is_uncoupled() {
+    if C::IS_DIAGONAL {
         for entry in S::STRUCTURE.jacobian.q {
             x[entry.col] -= directions[entry.row][entry.col] * y[entry.row];
         }

@@ -8,6 +8,9 @@ mod closed_form;
 mod dense;
 mod elimination;
 mod kkt;
+mod pivoted;
+mod symmetric_eigen;
+mod triangular;
 
 pub use closed_form::{Inverse0, Inverse1, Inverse2};
 pub use dense::DenseLu;
@@ -17,6 +20,9 @@ pub use elimination::{Elimination, Guarded, reciprocal_pivot};
 #[cfg(feature = "generic")]
 pub(crate) use kkt::reciprocal_power_of_two;
 pub(crate) use kkt::{FactoredKkt, Kkt, constraint_index, unknowns};
+pub(crate) use pivoted::Pivoted;
+pub(crate) use symmetric_eigen::SymmetricEigen;
+pub(crate) use triangular::Cholesky;
 
 /// Factors of a square matrix `A`.
 pub trait Factorization<V, M>: Sized {

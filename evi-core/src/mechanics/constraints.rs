@@ -1,6 +1,6 @@
 //! Products with the constraint Jacobian, entry by entry of its pattern.
 
-use super::{CoordinateMatrix, Mechanics};
+use super::{CoordinateMatrix, Coupling, Mechanics};
 use crate::array::Array;
 use crate::scalar::Scalar;
 use crate::system::MechanicalSystem;
@@ -34,16 +34,16 @@ impl<S: MechanicalSystem> Mechanics<S> {
 
     /// `B Gᵀ` for a symmetric matrix `B`, a row per constraint.
     #[inline(always)]
-    pub(crate) fn constraint_directions(
+    pub(crate) fn constraint_directions<C: Coupling<S>>(
         &self,
         jacobian: &S::PerJacobianEntry<f64>,
-        matrix: &CoordinateMatrix<S>,
+        matrix: &CoordinateMatrix<S, C>,
     ) -> Directions<S> {
         let mut directions: Directions<S> = Array::from_fn(|_| Array::from_fn(|_| 0.0));
         for entry in S::STRUCTURE.jacobian.q {
             let slope = entry.value(self.constants.as_ref(), jacobian.as_ref());
             let direction = &mut directions[entry.row];
-            if S::STRUCTURE.is_uncoupled() {
+            if C::IS_DIAGONAL {
                 direction[entry.col] = matrix.at(entry.col, entry.col) * slope;
             } else {
                 for i in 0..S::N_COORDINATES {
@@ -54,9 +54,9 @@ impl<S: MechanicalSystem> Mechanics<S> {
         directions
     }
 
-    /// `G D`, where the rows of `directions` are the columns of `D`.
+    /// `G D`, where the rows of `directions` are the columns of `D`, made by a matrix that couples what `C` says.
     #[inline(always)]
-    pub(crate) fn gram_matrix(
+    pub(crate) fn gram_matrix<C: Coupling<S>>(
         &self,
         jacobian: &S::PerJacobianEntry<f64>,
         directions: &Directions<S>,
@@ -64,7 +64,7 @@ impl<S: MechanicalSystem> Mechanics<S> {
         let mut gram: Gram<S> = Array::from_fn(|_| Array::from_fn(|_| NOTHING));
         for entry in S::STRUCTURE.jacobian.q {
             let slope = entry.value(self.constants.as_ref(), jacobian.as_ref());
-            if S::STRUCTURE.is_uncoupled() {
+            if C::IS_DIAGONAL {
                 for other in S::STRUCTURE.jacobian.q {
                     if other.col == entry.col {
                         gram[entry.row][other.row] += slope * directions[other.row][other.col];
@@ -126,5 +126,37 @@ impl<S: MechanicalSystem> Mechanics<S> {
             rate[entry.row] += entry.value(self.constants.as_ref(), jacobian) * v[entry.col];
         }
         rate
+    }
+
+    /// Calls `add(row, col, value)` for every entry of `Σ μ φ_qq`, the second derivative of `μᵀφ`.
+    pub(crate) fn for_each_constraint_curvature(
+        &self,
+        t: f64,
+        q: &S::PerCoordinate<f64>,
+        multipliers: &S::PerConstraint<f64>,
+        mut add: impl FnMut(usize, usize, f64),
+    ) {
+        if S::N_CONSTRAINTS == 0 {
+            return;
+        }
+        let curvature = |direction| S::constraint_curvature(&self.constants, t, q, &direction);
+        let unit = |i: usize, j: usize| if i == j { 1.0 } else { 0.0 };
+        let at_rest = curvature(Array::from_fn(|_| 0.0));
+        let along: Directions<S> = {
+            let columns = S::PerCoordinate::<S::PerConstraint<f64>>::from_fn(|col| {
+                curvature(Array::from_fn(|i| unit(i, col)))
+            });
+            Array::from_fn(|c| Array::from_fn(|col| columns[col][c]))
+        };
+        for row in 0..S::N_COORDINATES {
+            for col in 0..S::N_COORDINATES {
+                // γ is a quadratic polynomial of the velocity: γ(a + b) − γ(a) − γ(b) + γ(0) leaves twice its
+                // bilinear form, without the terms of time. Constraint by constraint, so that small whole numbers
+                // cancel exactly, and in an order that rows and columns may exchange.
+                let along_both = curvature(Array::from_fn(|i| unit(i, row) + unit(i, col)));
+                let bilinear = |c: usize| along_both[c] - (along[c][row] + along[c][col]) + at_rest[c];
+                add(row, col, (0..S::N_CONSTRAINTS).map(|c| 0.5 * multipliers[c] * bilinear(c)).sum());
+            }
+        }
     }
 }

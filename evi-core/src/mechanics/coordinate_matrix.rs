@@ -1,5 +1,8 @@
-//! Constant symmetric matrices over the coordinates, diagonal where the scene couples no two of them.
+//! Constant matrices over the coordinates.
 
+use core::marker::PhantomData;
+
+use super::{AsScene, Coupling};
 use crate::array::Array;
 use crate::linear::{Factorization, SingularMatrix};
 use crate::system::MechanicalSystem;
@@ -7,20 +10,17 @@ use crate::system::MechanicalSystem;
 /// A square array of numbers, by rows.
 pub(crate) type Rows<S> = <S as MechanicalSystem>::PerCoordinate<<S as MechanicalSystem>::PerCoordinate<f64>>;
 
-/// A constant symmetric matrix over the coordinates.
-pub(crate) struct CoordinateMatrix<S: MechanicalSystem> {
-    /// All that is read where the scene is uncoupled.
+/// A constant symmetric matrix over the coordinates, which couples those that `C` says.
+pub(crate) struct CoordinateMatrix<S: MechanicalSystem, C = AsScene> {
+    /// All that is read of a diagonal matrix.
     diagonal: S::PerCoordinate<f64>,
     rows: Rows<S>,
+    coupling: PhantomData<C>,
 }
 
 impl<S: MechanicalSystem> CoordinateMatrix<S> {
     pub(crate) fn zero_rows() -> Rows<S> {
         Array::from_fn(|_| Array::from_fn(|_| 0.0))
-    }
-
-    pub(crate) fn new(rows: Rows<S>) -> Self {
-        Self { diagonal: Array::from_fn(|i| rows[i][i]), rows }
     }
 
     /// The inverse of a matrix, symmetric to the last bit.
@@ -43,22 +43,48 @@ impl<S: MechanicalSystem> CoordinateMatrix<S> {
     pub(crate) fn scaled(&self, factor: f64) -> Self {
         Self::new(Array::from_fn(|row| Array::from_fn(|col| factor * self.rows[row][col])))
     }
+}
 
-    /// The element at `(row, col)`; `row = col` where the scene is uncoupled.
+impl<S: MechanicalSystem, C: Coupling<S>> CoordinateMatrix<S, C> {
+    pub(crate) fn new(rows: Rows<S>) -> Self {
+        Self { diagonal: Array::from_fn(|i| rows[i][i]), rows, coupling: PhantomData }
+    }
+
+    /// The element at `(row, col)`; `row = col` of a diagonal matrix.
     #[inline(always)]
     pub(crate) fn at(&self, row: usize, col: usize) -> f64 {
-        if S::STRUCTURE.is_uncoupled() { self.diagonal[row] } else { self.rows[row][col] }
+        if C::IS_DIAGONAL { self.diagonal[row] } else { self.rows[row][col] }
     }
 
     /// The product with a vector.
     #[inline(always)]
     pub(crate) fn times(&self, x: impl Fn(usize) -> f64) -> S::PerCoordinate<f64> {
         Array::from_fn(|i| {
-            if S::STRUCTURE.is_uncoupled() {
+            if C::IS_DIAGONAL {
                 self.diagonal[i] * x(i)
             } else {
                 (0..S::N_COORDINATES).map(|k| self.rows[i][k] * x(k)).sum()
             }
         })
+    }
+}
+
+/// `rows · x`, for a matrix that need not be symmetric.
+#[inline]
+pub(crate) fn times<S: MechanicalSystem>(rows: &Rows<S>, x: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
+    Array::from_fn(|row| (0..S::N_COORDINATES).map(|col| rows[row][col] * x[col]).sum())
+}
+
+/// Adds `rowsᵀ · x` to `sum`.
+#[inline]
+pub(crate) fn add_transposed<S: MechanicalSystem>(
+    rows: &Rows<S>,
+    x: &S::PerCoordinate<f64>,
+    sum: &mut S::PerCoordinate<f64>,
+) {
+    for row in 0..S::N_COORDINATES {
+        for col in 0..S::N_COORDINATES {
+            sum[col] += rows[row][col] * x[row];
+        }
     }
 }

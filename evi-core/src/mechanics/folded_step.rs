@@ -12,21 +12,26 @@
 //! the number of nodes, and positions are eliminated for good. Each of the three maps is symplectic whatever the rounding
 //! of its matrix, so that rounded coefficients cause no drift.
 
-use super::{ConstantLegendre, CoordinateMatrix, DiscreteLagrangian, Rows, Slot};
+use core::marker::PhantomData;
+
+use super::{
+    AsScene, ConstantLegendre, CoordinateMatrix, DiscreteLagrangian, KickDriftKick, Mechanics, Rows, Slot,
+};
 use crate::array::Array;
 use crate::linear::SingularMatrix;
-use crate::scheme::InterpolationTable;
+use crate::scheme::Interpolant;
 use crate::system::{LagrangianGradient, MechanicalSystem};
 
-/// A step without its constraint forces.
-pub(crate) struct FoldedStep<S: MechanicalSystem> {
+/// A step without its constraint forces, on the curves of `F`.
+pub(crate) struct FoldedStep<S: MechanicalSystem, F> {
     /// `q₀ ↦ −(B q₀ + a)/h`.
     start_kick: Kick<S>,
     /// `q₁ ↦ (E q₁ + c)/h`.
     end_kick: Kick<S>,
     /// `h A⁻¹`.
-    pub(crate) drift: CoordinateMatrix<S>,
-    pub(crate) legendre: ConstantLegendre<S>,
+    drift: CoordinateMatrix<S>,
+    legendre: ConstantLegendre<S>,
+    curves: PhantomData<F>,
 }
 
 /// An affine force times a time.
@@ -35,7 +40,7 @@ struct Kick<S: MechanicalSystem> {
     constant: S::PerCoordinate<f64>,
 }
 
-impl<S: MechanicalSystem> FoldedStep<S> {
+impl<S: MechanicalSystem, F: Interpolant<S>> FoldedStep<S, F> {
     /// Whether the steps of the scene can be folded.
     pub(crate) const EXISTS: bool = S::STRUCTURE.hessian.is_constant()
         && S::STRUCTURE.hessian.vq.is_empty()
@@ -46,8 +51,8 @@ impl<S: MechanicalSystem> FoldedStep<S> {
     ///
     /// # Errors
     /// [`SingularMatrix`] if `M` or `A` is singular: then the constraints are needed to determine the motion.
-    pub(crate) fn new<T: InterpolationTable, const K: usize>(
-        action: &DiscreteLagrangian<S, T, K>,
+    pub(crate) fn new<const K: usize>(
+        action: &DiscreteLagrangian<S, F::Table<K>, K>,
     ) -> Result<Self, SingularMatrix> {
         let h = action.h();
         let constants = &action.mechanics.constants;
@@ -82,29 +87,44 @@ impl<S: MechanicalSystem> FoldedStep<S> {
             end_kick: Kick { linear: CoordinateMatrix::new(end_matrix), constant: end_constant },
             drift: CoordinateMatrix::inverse_of(&step_matrix)?.scaled(h),
             legendre: ConstantLegendre::new(&action.mechanics)?,
+            curves: PhantomData,
         })
     }
+}
 
-    /// `p½` without constraint forces.
+impl<S: MechanicalSystem, F: Interpolant<S>> KickDriftKick<S> for FoldedStep<S, F> {
+    type Coupling = AsScene;
+
     #[inline]
-    pub(crate) fn kicked_at_start(
+    fn kicked_at_start(
         &self,
-        is_straight: bool,
+        _mechanics: &Mechanics<S>,
+        _t: f64,
         q: &S::PerCoordinate<f64>,
         p: &S::PerCoordinate<f64>,
     ) -> S::PerCoordinate<f64> {
-        self.start_kick.apply(is_straight, q, p)
+        self.start_kick.apply(F::IS_STRAIGHT, q, p)
     }
 
-    /// `p⁻` from `p½`.
     #[inline]
-    pub(crate) fn kicked_at_end(
+    fn kicked_at_end(
         &self,
-        is_straight: bool,
+        _mechanics: &Mechanics<S>,
+        _t: f64,
         q: &S::PerCoordinate<f64>,
         p: &S::PerCoordinate<f64>,
     ) -> S::PerCoordinate<f64> {
-        self.end_kick.apply(is_straight, q, p)
+        self.end_kick.apply(F::IS_STRAIGHT, q, p)
+    }
+
+    #[inline(always)]
+    fn drift(&self) -> &CoordinateMatrix<S> {
+        &self.drift
+    }
+
+    #[inline(always)]
+    fn legendre(&self) -> &ConstantLegendre<S> {
+        &self.legendre
     }
 }
 

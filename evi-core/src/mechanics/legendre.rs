@@ -1,6 +1,6 @@
 //! The Legendre transform of a scene with a constant mass matrix, `p = M v + a`, inverted once.
 
-use super::{CoordinateMatrix, Mechanics, Projected};
+use super::{AsScene, CoordinateMatrix, Mechanics, Projected};
 use crate::array::Array;
 use crate::linear::{Factorization, SingularMatrix};
 use crate::newton::Tally;
@@ -37,6 +37,18 @@ impl<S: MechanicalSystem> ConstantLegendre<S> {
         self.inverse_mass.times(|i| self.moving_momentum(p, i))
     }
 
+    /// `M v = p − a`.
+    #[inline]
+    pub(crate) fn moving(&self, p: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
+        Array::from_fn(|i| self.moving_momentum(p, i))
+    }
+
+    /// `p = M v + a`, from `M v`.
+    #[inline]
+    pub(crate) fn canonical(&self, moving: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
+        Array::from_fn(|i| moving[i] + self.momentum_at_rest[i])
+    }
+
     /// Factors of `G M⁻¹ Gᵀ`.
     ///
     /// # Errors
@@ -49,7 +61,7 @@ impl<S: MechanicalSystem> ConstantLegendre<S> {
         tally: &mut impl Tally,
     ) -> Result<S::GramFactors, SingularMatrix> {
         let directions = mechanics.constraint_directions(jacobian, &self.inverse_mass);
-        let gram = S::GramFactors::factor(&mechanics.gram_matrix(jacobian, &directions))?;
+        let gram = S::GramFactors::factor(&mechanics.gram_matrix::<AsScene>(jacobian, &directions))?;
         if gram.is_fallback() {
             tally.count_fallback();
         }

@@ -1,27 +1,43 @@
 //! Mechanics of a scene in continuous and discrete time, without a step size policy or an iteration of steps.
 //!
 //! In: a scene's kernels and their constants. Out: energies, momenta, forces, projections, accelerations with multipliers
-//! ([`Mechanics`]), the equations of one step (`DiscreteLagrangian`), and for quadratic Lagrangians the step itself
-//! but for its constraints (`FoldedStep`).
+//! ([`Mechanics`]), linearisations ([`Linearisation`]), the equations of one step (`DiscreteLagrangian`; `MatrixAction` where a
+//! quadratic part is integrated exactly), and steps that are linear in the momentum, but for their constraints: those of
+//! quadratic Lagrangians (`FoldedStep`) and impulse methods (`ImpulseStep`).
 
 mod constraints;
 mod coordinate_matrix;
+mod coupling;
 mod folded_step;
 mod forces;
+mod impulse_step;
+mod kick_drift_kick;
 mod legendre;
+mod linearisation;
+mod matrix_action;
+mod modes;
 mod momentum;
 mod observables;
+mod quadratic_part;
 mod state;
 mod step_equations;
 
 pub(crate) use constraints::{Directions, NOTHING};
 pub(crate) use coordinate_matrix::{CoordinateMatrix, Rows};
+pub(crate) use coupling::{AsScene, Coupling, Full};
 pub(crate) use folded_step::FoldedStep;
 pub(crate) use forces::{ForceDerivatives, ForcePoint};
+pub(crate) use impulse_step::ImpulseStep;
+pub(crate) use kick_drift_kick::KickDriftKick;
 pub(crate) use legendre::ConstantLegendre;
+pub use linearisation::Linearisation;
+pub(crate) use matrix_action::MatrixAction;
+pub(crate) use modes::Modes;
 pub use momentum::{Acceleration, ProjectionError};
 pub(crate) use momentum::{Projected, relative};
 pub(crate) use observables::norm;
+pub use quadratic_part::QuadraticPart;
+pub(crate) use quadratic_part::StepModes;
 pub use state::State;
 pub(crate) use step_equations::{DiscreteLagrangian, Slot, StepStart};
 

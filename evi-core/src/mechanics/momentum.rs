@@ -2,7 +2,7 @@
 
 use super::{ForcePoint, Mechanics};
 use crate::array::Array;
-use crate::linear::{FactoredKkt, Kkt, SingularMatrix, constraint_index, unknowns};
+use crate::linear::{FactoredKkt, SingularMatrix, constraint_index, unknowns};
 use crate::newton::{self, NotConverged, Tally};
 use crate::system::{LagrangianGradient, MechanicalSystem};
 
@@ -124,7 +124,9 @@ impl<S: MechanicalSystem> Mechanics<S> {
         newton::iterate(|_| -> Result<f64, ProjectionError> {
             let (residual, jacobian) = S::constraint_derivatives(&self.constants, t, &q);
             let mut kkt = self.mass_kkt(hessian.as_ref(), jacobian.as_ref());
-            self.add_constraint_hessian(t, &q, &multipliers, &mut kkt);
+            self.for_each_constraint_curvature(t, &q, &multipliers, |row, col, curvature| {
+                kkt.add_block(row, col, curvature);
+            });
             let kkt = kkt.factor_densely()?;
             let displacement = S::PerCoordinate::<f64>::from_fn(|i| q[i] - start[i]);
             let mut pull = self.mass_times(hessian.as_ref(), &displacement);
@@ -140,32 +142,6 @@ impl<S: MechanicalSystem> Mechanics<S> {
             Ok(kkt.relative_length(|i| correction[i], |i| q[i]))
         })?;
         Ok(q)
-    }
-
-    /// Adds `Σ μ φ_qq` to the block of the coordinates.
-    fn add_constraint_hessian(
-        &self,
-        t: f64,
-        q: &S::PerCoordinate<f64>,
-        multipliers: &S::PerConstraint<f64>,
-        kkt: &mut Kkt<S>,
-    ) {
-        let weighted_curvature = |direction: S::PerCoordinate<f64>| -> f64 {
-            let curvature = S::constraint_curvature(&self.constants, t, q, &direction);
-            curvature.as_ref().iter().zip(multipliers.as_ref()).map(|(c, multiplier)| c * multiplier).sum()
-        };
-        let unit = |i: usize, j: usize| if i == j { 1.0 } else { 0.0 };
-        let at_rest = weighted_curvature(Array::from_fn(|_| 0.0));
-        let along =
-            S::PerCoordinate::<f64>::from_fn(|col| weighted_curvature(Array::from_fn(|i| unit(i, col))));
-        for row in 0..S::N_COORDINATES {
-            for col in 0..S::N_COORDINATES {
-                // γ is a quadratic polynomial of the velocity: γ(a + b) − γ(a) − γ(b) + γ(0) leaves twice its
-                // bilinear form, without the terms of time.
-                let along_both = weighted_curvature(Array::from_fn(|i| unit(i, row) + unit(i, col)));
-                kkt.add_block(row, col, 0.5 * (along_both - along[row] - along[col] + at_rest));
-            }
-        }
     }
 
     /// `M x`.

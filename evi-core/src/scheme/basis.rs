@@ -17,7 +17,7 @@ use crate::scheme::{Frequency, Quadrature, SchemeError};
 use crate::system::MechanicalSystem;
 
 /// Below this |sin u| an interpolant amplifies round-off of its end points a thousandfold: refused as resonant.
-const SMALLEST_SINE: f64 = 1e-3;
+pub(super) const SMALLEST_SINE: f64 = 1e-3;
 /// Below this kinetic coefficient (1 at u = 0) the step equation loses three digits of the end point: refused.
 const SMALLEST_KINETIC_COEFFICIENT: f64 = 1e-3;
 /// Below this |u| the curve is straight to the last bit: its deviation is u²/8.
@@ -136,6 +136,22 @@ pub trait Interpolant<S: MechanicalSystem> {
     /// The coefficients at `K` nodes.
     type Table<const K: usize>: InterpolationTable;
 
+    /// The frequency of a coordinate's curve, in a scene with these constants.
+    fn frequency(&self, constants: &S::PerConstant<f64>, coordinate: usize) -> Frequency;
+
+    /// The rule that this family uses in the place of `quadrature`: the same nodes, weights of its own where it has such.
+    ///
+    /// # Errors
+    /// [`SchemeError`] for nodes that the family has no weights for.
+    fn rule<const K: usize>(
+        &self,
+        _constants: &S::PerConstant<f64>,
+        quadrature: &Quadrature<K>,
+        _h: f64,
+    ) -> Result<Quadrature<K>, SchemeError> {
+        Ok(*quadrature)
+    }
+
     /// The coefficients at the nodes of `quadrature` for steps of size `h` of a scene with these constants.
     ///
     /// # Errors
@@ -164,6 +180,10 @@ impl<S: MechanicalSystem> Interpolant<S> for Linear {
         _h: f64,
     ) -> Result<LinearTable<K>, SchemeError> {
         Ok(LinearTable { offsets: *quadrature.offsets() })
+    }
+
+    fn frequency(&self, _constants: &S::PerConstant<f64>, _coordinate: usize) -> Frequency {
+        Frequency::ZERO
     }
 }
 
@@ -195,6 +215,10 @@ impl<S: MechanicalSystem> Interpolant<S> for Frequency {
         h: f64,
     ) -> Result<UniformTable<K>, SchemeError> {
         Ok(UniformTable { nodes: checked_coefficients(*self, 0, quadrature, h)? })
+    }
+
+    fn frequency(&self, _constants: &S::PerConstant<f64>, _coordinate: usize) -> Frequency {
+        *self
     }
 }
 
@@ -229,6 +253,10 @@ where
             coordinates[i] = checked_coefficients(self[i], i, quadrature, h)?;
         }
         Ok(CoordinateTable { coordinates })
+    }
+
+    fn frequency(&self, _constants: &S::PerConstant<f64>, coordinate: usize) -> Frequency {
+        self[coordinate]
     }
 }
 

@@ -114,6 +114,16 @@ impl<const S: usize> Quadrature<S> {
         })
     }
 
+    /// `Σ wⱼ σⱼ²`: 1/12 for every rule of degree 2, 1/4 for the trapezoid, 0 for the midpoint.
+    pub fn second_moment(&self) -> f64 {
+        self.weights.iter().zip(&self.offsets).map(|(weight, offset)| weight * offset * offset).sum()
+    }
+
+    /// The same nodes with other weights.
+    pub(crate) const fn with_weights(&self, weights: [f64; S]) -> Self {
+        Self { offsets: self.offsets, weights }
+    }
+
     /// Mirrors the left half of the offsets, so that symmetry holds bitwise.
     fn with_symmetric_offsets(offset: impl Fn(usize) -> f64) -> Self {
         Self::with_offsets(core::array::from_fn(|j| match (2 * j + 1).cmp(&S) {

@@ -13,6 +13,10 @@ pub struct SceneFrequencies;
 impl<S: HasFrequencies> Interpolant<S> for SceneFrequencies {
     type Table<const K: usize> = SceneTable<S, K>;
 
+    fn frequency(&self, constants: &S::PerConstant<f64>, coordinate: usize) -> Frequency {
+        Frequency::from(S::frequencies(constants)[coordinate])
+    }
+
     fn table<const K: usize>(
         &self,
         constants: &S::PerConstant<f64>,

@@ -245,6 +245,16 @@ impl Structure {
         is_diagonal(self.hessian.qq) && is_diagonal(self.hessian.vq) && is_diagonal(self.hessian.vv)
     }
 
+    /// Whether nothing holds a coordinate: neither a constraint nor a force depends on it, and `L` by a uniform force at most. Its velocity may be
+    /// coupled to anything.
+    pub const fn is_free(&self, coordinate: usize) -> bool {
+        !(has_column(self.hessian.qq, coordinate)
+            || has_row(self.hessian.qq, coordinate)
+            || has_column(self.hessian.vq, coordinate)
+            || has_column(self.jacobian.q, coordinate)
+            || has_column(self.forces.q, coordinate))
+    }
+
     /// Whether neither `L` nor `φ` nor a force depends on time.
     pub const fn is_autonomous(&self) -> bool {
         !(self.lagrangian.on_t || self.constraints.on_t || self.forces.on.on_t)
@@ -292,6 +302,28 @@ impl HessianPattern {
     pub const fn is_constant(&self) -> bool {
         is_constant(self.qq) && is_constant(self.vq) && is_constant(self.vv) && is_constant(self.vt)
     }
+}
+
+const fn has_column(entries: &[Entry], col: usize) -> bool {
+    let mut k = 0;
+    while k < entries.len() {
+        if entries[k].col == col {
+            return true;
+        }
+        k += 1;
+    }
+    false
+}
+
+const fn has_row(entries: &[Entry], row: usize) -> bool {
+    let mut k = 0;
+    while k < entries.len() {
+        if entries[k].row == row {
+            return true;
+        }
+        k += 1;
+    }
+    false
 }
 
 const fn is_diagonal(entries: &[Entry]) -> bool {

@@ -1,0 +1,195 @@
+//! The equations of a step whose quadratic part is integrated exactly, on any nodes.
+//!
+//! ```text
+//! L_d = exact action of ½ vᵀMv − ½ (q − q_ref)ᵀΩ(q − q_ref)  −  h Σ wⱼ U(tⱼ, xⱼ)
+//! x(τ) = q_ref + C(σW h)/C(½W h) (s − q_ref) + ½ S(σW h)/S(½W h) d        C = cos, S = sin, W² = M⁻¹ Ω
+//! ```
+//!
+//! The coefficients of [`crate::scheme::NodeCoefficients`], with matrices in the place of numbers. The exact action is that of a kick,
+//! a drift and a kick ([`super::ImpulseStep`] has the formulas).
+
+use super::coordinate_matrix::{add_transposed, times};
+use super::{Mechanics, QuadraticPart, Rows, StepModes, StepStart};
+use crate::array::Array;
+use crate::linear::{Kkt, unknowns};
+use crate::scheme::{Mollifier, Quadrature};
+use crate::system::MechanicalSystem;
+
+/// The discrete Lagrangian of a scene with a matrix frequency for one step size.
+pub(crate) struct MatrixAction<S: MechanicalSystem, const K: usize> {
+    pub(crate) mechanics: Mechanics<S>,
+    part: QuadraticPart<S>,
+    h: f64,
+    quadrature: Quadrature<K>,
+    /// `T`.
+    kick: Rows<S>,
+    /// `D⁻¹`.
+    inverse_drift: Rows<S>,
+    nodes: [Node<S>; K],
+    /// `∂L/∂v` at `v = 0`.
+    momentum_at_rest: S::PerCoordinate<f64>,
+}
+
+/// How the position at a node depends on the ends of a step.
+struct Node<S: MechanicalSystem> {
+    /// Position per half-sum.
+    even: Rows<S>,
+    /// Position per difference.
+    odd: Rows<S>,
+}
+
+/// What the rest of the potential makes of a step.
+struct Impulses<S: MechanicalSystem> {
+    /// `h Σ wⱼ g₁ⱼᵀ U'(xⱼ)`.
+    start: S::PerCoordinate<f64>,
+    /// `h Σ wⱼ g₂ⱼᵀ U'(xⱼ)`.
+    end: S::PerCoordinate<f64>,
+}
+
+impl<S: MechanicalSystem, const K: usize> MatrixAction<S, K> {
+    pub(crate) fn new(
+        mechanics: Mechanics<S>,
+        part: QuadraticPart<S>,
+        StepModes { modes, flows }: &StepModes<S>,
+        mollifier: Option<Mollifier>,
+        quadrature: Quadrature<K>,
+        h: f64,
+    ) -> Self {
+        let filter = |k: usize| mollifier.map_or(1.0, |filter| filter.filter(flows[k].squared_phase()));
+        let nodes = quadrature.offsets().map(|offset| Node {
+            even: modes.function(|k| filter(k) * flows[k].coefficients(offset).even),
+            odd: modes.function(|k| filter(k) * flows[k].coefficients(offset).odd),
+        });
+        let at_rest = Array::from_fn(|_| 0.0);
+        Self {
+            kick: modes.to_momenta(|k| flows[k].kick),
+            inverse_drift: modes.to_momenta(|k| 1.0 / flows[k].drift),
+            momentum_at_rest: mechanics.momentum_at(0.0, &part.reference, &at_rest),
+            mechanics,
+            part,
+            h,
+            quadrature,
+            nodes,
+        }
+    }
+
+    /// Step size.
+    pub(crate) fn h(&self) -> f64 {
+        self.h
+    }
+
+    /// The residual of the step equations at `(d, Λ)` and their derivative, as in
+    /// [`DiscreteLagrangian::linearize`](super::DiscreteLagrangian::linearize):
+    ///
+    /// ```text
+    /// h (D⁻¹ d − p½(q₀, p₀, d)) + G₀ᵀΛ = 0      φ(t₁, q₁) = 0
+    /// ```
+    #[inline]
+    pub(crate) fn linearize(
+        &self,
+        start: &StepStart<'_, S>,
+        difference: &S::PerCoordinate<f64>,
+        impulse: &S::PerConstraint<f64>,
+    ) -> (S::PerUnknown<f64>, Kkt<S>) {
+        let h = self.h;
+        let mut kkt = Kkt::zero();
+        for row in 0..S::N_COORDINATES {
+            for col in 0..S::N_COORDINATES {
+                kkt.add_block(row, col, h * self.inverse_drift[row][col]);
+            }
+        }
+        let kicked = self.kicked_at_start(start, difference, Some(&mut kkt));
+        let drifted = times::<S>(&self.inverse_drift, difference);
+        let mut momentum_row = S::PerCoordinate::<f64>::from_fn(|i| h * (drifted[i] - kicked[i]));
+        let constants = &self.mechanics.constants;
+        let end = Array::from_fn(|i| start.q[i] + difference[i]);
+        let (residual, jacobian) = S::constraint_derivatives(constants, start.t + h, &end);
+        kkt.set_upper_jacobian(constants.as_ref(), start.jacobian.as_ref());
+        kkt.set_lower_jacobian(constants.as_ref(), jacobian.as_ref());
+        self.mechanics.add_constraint_force(start.jacobian.as_ref(), impulse.as_ref(), momentum_row.as_mut());
+        (unknowns::<S>(|i| momentum_row[i], |c| residual[c]), kkt)
+    }
+
+    /// The momentum `p⁻` at the end of a step whose difference and impulse `Λ` solve its equations.
+    #[inline]
+    pub(crate) fn end_momentum(
+        &self,
+        start: &StepStart<'_, S>,
+        difference: &S::PerCoordinate<f64>,
+        impulse: &S::PerConstraint<f64>,
+    ) -> S::PerCoordinate<f64> {
+        // From p₀ on, not from d/h: no difference of two large momenta.
+        let mut p = self.kicked_at_start(start, difference, None);
+        let impulse = S::PerConstraint::<f64>::from_fn(|c| impulse[c] / self.h);
+        self.mechanics.subtract_constraint_force(start.jacobian.as_ref(), impulse.as_ref(), p.as_mut());
+        let end = Array::from_fn(|i| start.q[i] + difference[i]);
+        let displacement = self.part.displacement(&end);
+        let linear = times::<S>(&self.kick, &displacement);
+        let Impulses { end, .. } = self.impulses(start, difference, None);
+        Array::from_fn(|i| p[i] + self.momentum_at_rest[i] + (linear[i] - end[i]))
+    }
+
+    /// `p½` without constraint forces; adds `−h ∂p½/∂d` to `kkt`.
+    #[inline]
+    fn kicked_at_start(
+        &self,
+        start: &StepStart<'_, S>,
+        difference: &S::PerCoordinate<f64>,
+        kkt: Option<&mut Kkt<S>>,
+    ) -> S::PerCoordinate<f64> {
+        let displacement = self.part.displacement(start.q);
+        let linear = times::<S>(&self.kick, &displacement);
+        let Impulses { start: impulse, .. } = self.impulses(start, difference, kkt);
+        Array::from_fn(|i| start.p[i] - self.momentum_at_rest[i] + (linear[i] - impulse[i]))
+    }
+
+    #[inline]
+    fn impulses(
+        &self,
+        start: &StepStart<'_, S>,
+        difference: &S::PerCoordinate<f64>,
+        mut kkt: Option<&mut Kkt<S>>,
+    ) -> Impulses<S> {
+        let half_sum = Array::from_fn(|i| start.q[i] + 0.5 * difference[i]);
+        let half_sum = self.part.displacement(&half_sum);
+        let mut sum = Impulses::<S> { start: Array::from_fn(|_| 0.0), end: Array::from_fn(|_| 0.0) };
+        for (j, node) in self.nodes.iter().enumerate() {
+            let (even, odd) = (times::<S>(&node.even, &half_sum), times::<S>(&node.odd, difference));
+            let x = Array::from_fn(|i| even[i] + odd[i]);
+            let t = start.t + (0.5 + self.quadrature.offsets()[j]) * self.h;
+            let weight = self.h * self.quadrature.weights()[j];
+            let gradient = self.part.remaining_gradient(&self.mechanics, t, &x);
+            let (mut even, mut odd) = (Array::from_fn(|_| 0.0), Array::from_fn(|_| 0.0));
+            add_transposed::<S>(&node.even, &gradient, &mut even);
+            add_transposed::<S>(&node.odd, &gradient, &mut odd);
+            for i in 0..S::N_COORDINATES {
+                sum.start[i] += weight * (0.5 * even[i] - odd[i]);
+                sum.end[i] += weight * (0.5 * even[i] + odd[i]);
+            }
+            if let Some(kkt) = &mut kkt {
+                self.add_hessian(
+                    node,
+                    self.h * weight,
+                    &self.part.remaining_hessian(&self.mechanics, t, &x),
+                    kkt,
+                );
+            }
+        }
+        sum
+    }
+
+    /// Adds `weight g₁ᵀ U'' g₂`, `g₁ = ½ even − odd`, `g₂ = ½ even + odd`.
+    fn add_hessian(&self, node: &Node<S>, weight: f64, hessian: &Rows<S>, kkt: &mut Kkt<S>) {
+        let n = S::N_COORDINATES;
+        let end = |row: usize, col: usize| 0.5 * node.even[row][col] + node.odd[row][col];
+        let start = |row: usize, col: usize| 0.5 * node.even[row][col] - node.odd[row][col];
+        let image: Rows<S> =
+            Array::from_fn(|row| Array::from_fn(|col| (0..n).map(|k| hessian[row][k] * end(k, col)).sum()));
+        for row in 0..n {
+            for col in 0..n {
+                let value: f64 = (0..n).map(|k| start(k, row) * image[k][col]).sum();
+                kkt.add_block(row, col, weight * value);
+            }
+        }
+    }
+}
