@@ -34,7 +34,7 @@ fn check_symplectic<S, F, const N: usize>(
         after = action.tangent_map(&system, &state, next) * after;
     }
     let roundings = symplectic_defect(&before, &after);
-    // Measured 6.2: the second derivatives of the formula are of size M/h, twenty times the norm that they add up to.
+    // Measured 7.6: the second derivatives of the formula are of size M/h, twenty times the norm that they add up to.
     assert!(roundings <= 12.0, "the form changes by {roundings:.0} roundings");
 }
 
