@@ -8,7 +8,10 @@ use clap::Parser;
 
 use evi_core::prelude::*;
 use evi_core::report::SystemReport;
-use evi_examples::{DoublePendulum, HarmonicOscillator, Pendulum, SphericalPendulum, StiffSpringPendulum};
+use evi_examples::{
+    AndrewsSqueezer, CarAxis, DoublePendulum, HarmonicOscillator, Pendulum, SphericalPendulum,
+    StiffSpringPendulum,
+};
 
 /// Equations, structure and generated code of a scene of the gallery.
 #[derive(Parser)]
@@ -36,7 +39,9 @@ struct Scene {
     source: Option<&'static str>,
 }
 
-const SCENES: [Scene; 5] = [
+const SCENES: [Scene; 7] = [
+    Scene::of::<AndrewsSqueezer>(),
+    Scene::of::<CarAxis>(),
     Scene::of::<DoublePendulum>(),
     Scene::of::<HarmonicOscillator>(),
     Scene::of::<Pendulum>(),
