@@ -153,6 +153,17 @@ fn no_step_of_a_composition_allocates() {
     check(PENDULUM, Evi::simpson(0.01).composed(Composition::triple_jump_4()), SWING);
 }
 
+#[test]
+fn no_step_of_a_galerkin_integrator_allocates() {
+    check(DOUBLE, Galerkin::<1>::new(0.01), mild());
+    check(DOUBLE, Galerkin::<3>::new(0.01), mild());
+    check(DOUBLE, Galerkin::<8>::new(0.01), mild());
+    check(DOUBLE, Galerkin::<3>::new(0.01).frequencies(PER_BODY), mild());
+    check(SPHERICAL, Galerkin::<2>::new(0.01).frequency(OMEGA), SPHERICAL.one_radian());
+    check(SPRING, Galerkin::<4>::new(0.01), SPRING.horizontal());
+    check(DOUBLE, Galerkin::<1>::new(0.01).composed(Composition::suzuki_4()), mild());
+}
+
 /// Takes 1,000 steps of the generic path and expects that none allocates.
 #[track_caller]
 fn check_generic<S: GenericSystem, const N: usize>(system: S, scheme: GenericEvi, start: Start<N>) {

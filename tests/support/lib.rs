@@ -3,6 +3,7 @@
 
 pub mod conservation;
 pub mod convergence;
+pub mod galerkin;
 pub mod motions;
 pub mod references;
 pub mod scenes;

@@ -6,6 +6,8 @@
 
 mod composition;
 mod evi;
+#[cfg(feature = "std")]
+mod galerkin;
 mod multipliers;
 mod run;
 mod simulation;
@@ -14,6 +16,8 @@ mod trajectory;
 
 pub use composition::{Composed, ComposedStep, Composition, Symmetric};
 pub use evi::{Evi, EviStep};
+#[cfg(feature = "std")]
+pub use galerkin::{Galerkin, GalerkinStep};
 pub use run::Run;
 #[cfg(feature = "generic")]
 pub(crate) use run::steps_between;

@@ -6,6 +6,8 @@
 
 mod constraints;
 mod folded_step;
+#[cfg(feature = "std")]
+mod galerkin_equations;
 mod momentum;
 mod observables;
 mod state;
@@ -13,6 +15,8 @@ mod step_equations;
 
 pub(crate) use constraints::Directions;
 pub(crate) use folded_step::FoldedStep;
+#[cfg(feature = "std")]
+pub(crate) use galerkin_equations::{GalerkinAction, Points};
 pub use momentum::{Acceleration, ProjectionError};
 pub(crate) use momentum::{Projected, relative};
 pub(crate) use observables::norm;
@@ -37,6 +41,19 @@ impl<S: MechanicalSystem> Mechanics<S> {
     /// Folds the parameters of `system` into the constants of its equations.
     pub fn new(system: &S) -> Self {
         Self { constants: S::constants(&system.parameters()) }
+    }
+
+    /// Powers of two that bring the unknowns of a step to one unit: `1/√Mᵢᵢ` for a coordinate, `1/‖√M⁻¹ G_c‖` for a constraint.
+    #[cfg(feature = "std")]
+    pub(crate) fn unit_scale(
+        &self,
+        t: f64,
+        q: &S::PerCoordinate<f64>,
+        v: &S::PerCoordinate<f64>,
+    ) -> S::PerUnknown<f64> {
+        let (_, hessian) = S::lagrangian_derivatives(&self.constants, t, q, v);
+        let (_, jacobian) = S::constraint_derivatives(&self.constants, t, q);
+        self.mass_kkt(hessian.as_ref(), jacobian.as_ref()).scale()
     }
 
     /// The saddle-point matrix of mass matrix and constraints, `[M Gᵀ; G 0]`.

@@ -2,7 +2,7 @@
 
 use super::Mechanics;
 use crate::array::Array;
-use crate::linear::{FactoredKkt, Kkt, SingularMatrix, constraint_index, unknowns};
+use crate::linear::{FactoredKkt, SingularMatrix, constraint_index, unknowns};
 use crate::newton::{self, NotConverged};
 use crate::system::{LagrangianGradient, MechanicalSystem};
 
@@ -120,7 +120,9 @@ impl<S: MechanicalSystem> Mechanics<S> {
         newton::iterate(|_| -> Result<f64, ProjectionError> {
             let (residual, jacobian) = S::constraint_derivatives(&self.constants, t, &q);
             let mut kkt = self.mass_kkt(hessian.as_ref(), jacobian.as_ref());
-            self.add_constraint_hessian(t, &q, &multipliers, &mut kkt);
+            self.for_each_constraint_curvature(t, &q, &multipliers, |row, col, value| {
+                kkt.add_block(row, col, value);
+            });
             let kkt = kkt.factor_densely()?;
             let displacement = S::PerCoordinate::<f64>::from_fn(|i| q[i] - start[i]);
             let mut pull = self.mass_times(hessian.as_ref(), &displacement);
@@ -138,13 +140,13 @@ impl<S: MechanicalSystem> Mechanics<S> {
         Ok(q)
     }
 
-    /// Adds `Σ μ φ_qq` to the block of the coordinates.
-    fn add_constraint_hessian(
+    /// Calls `add(row, col, value)` for every entry of `Σ μ φ_qq` whose coordinates share a constraint.
+    pub(crate) fn for_each_constraint_curvature(
         &self,
         t: f64,
         q: &S::PerCoordinate<f64>,
         multipliers: &S::PerConstraint<f64>,
-        kkt: &mut Kkt<S>,
+        mut add: impl FnMut(usize, usize, f64),
     ) {
         let weighted_curvature = |direction: S::PerCoordinate<f64>| -> f64 {
             let curvature = S::constraint_curvature(&self.constants, t, q, &direction);
@@ -155,11 +157,15 @@ impl<S: MechanicalSystem> Mechanics<S> {
         let along =
             S::PerCoordinate::<f64>::from_fn(|col| weighted_curvature(Array::from_fn(|i| unit(i, col))));
         for row in 0..S::N_COORDINATES {
-            for col in 0..S::N_COORDINATES {
+            for col in (0..=row).filter(|&col| S::STRUCTURE.constraints_curve(row, col)) {
                 // γ is a quadratic polynomial of the velocity: γ(a + b) − γ(a) − γ(b) + γ(0) leaves twice its
                 // bilinear form, without the terms of time.
                 let along_both = weighted_curvature(Array::from_fn(|i| unit(i, row) + unit(i, col)));
-                kkt.add_block(row, col, 0.5 * (along_both - along[row] - along[col] + at_rest));
+                let value = 0.5 * (along_both - along[row] - along[col] + at_rest);
+                add(row, col, value);
+                if row != col {
+                    add(col, row, value);
+                }
             }
         }
     }

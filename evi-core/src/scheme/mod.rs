@@ -5,6 +5,7 @@
 
 mod basis;
 mod frequency;
+mod nodal;
 mod quadrature;
 
 #[cfg(feature = "generic")]
@@ -14,6 +15,8 @@ pub use basis::{
     CoordinateTable, Interpolant, InterpolationTable, Linear, LinearTable, NodeCoefficients, UniformTable,
 };
 pub use frequency::Frequency;
+pub(crate) use nodal::LobattoNodes;
+pub use nodal::{MOST_INTERVALS, NodalCurves, NodalTable, NodalTables};
 pub use quadrature::{Quadrature, QuadratureError};
 
 /// A scheme that does not define a step.
@@ -59,6 +62,31 @@ pub enum SchemeError {
         phase: f64,
         /// `Σ wⱼ (−h g₁'(cⱼ)) (h g₂'(cⱼ))`.
         kinetic_coefficient: f64,
+    },
+    /// `ω h` is so large that the curve oscillates between the nodes of a step.
+    #[error(
+        "the frequency of coordinate {coordinate} oscillates between the nodes: |ω h| = {phase}, at most {limit}"
+    )]
+    UnresolvedFrequency {
+        /// Index of the coordinate.
+        coordinate: usize,
+        /// `ω h`, or the rate times `h` of a hyperbolic function.
+        phase: f64,
+        /// The largest that is accepted.
+        limit: f64,
+    },
+    /// At this `ω h` the functions of a curve do not determine it by its points.
+    #[error(
+        "the points of a step do not determine the curve of coordinate {coordinate}: the determinant is \
+         {determinant:e} at |ω h| = {phase}, and 1 for small steps. Choose a smaller ω h"
+    )]
+    IndeterminateCurve {
+        /// Index of the coordinate.
+        coordinate: usize,
+        /// `ω h`, or the rate times `h` of a hyperbolic function.
+        phase: f64,
+        /// Determinant of the interpolation relative to that at `ω = 0`; `sin(ω h)/(ω h)` for one interval.
+        determinant: f64,
     },
     /// The frequencies are not one per coordinate.
     #[error("{frequencies} frequencies for {coordinates} coordinates: give one for all, or one each")]
