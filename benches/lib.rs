@@ -1,1 +1,4 @@
-//! Speed of single steps; see the bench targets.
+//! What a step costs: steps written by hand for one scene each, and the programs that time steps beside them (the bench
+//! targets and `step_cost`).
+
+pub mod hand_written;

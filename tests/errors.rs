@@ -396,7 +396,7 @@ fn check_no_solution(scheme: impl Scheme<DoublePendulum>, steps: u64) {
     assert_eq!(t, run.state().t());
     assert_eq!(corrections, 30);
     // Far from any solution, and finite: the iteration wandered, it neither converged nor escaped.
-    assert!(last_correction.is_finite() && last_correction > 1e-3, "{error:?}");
+    assert!(last_correction.is_finite() && last_correction > 1e-4, "{error:?}");
     assert!(constraint_residual.is_finite() && constraint_residual > 1e-4, "{error:?}");
     assert!(smallest_pivot_ratio > 0.0 && smallest_pivot_ratio <= 1.0, "{error:?}");
     check_text(&error, &["no solution", "30 corrections", "constraints", "pivot", "smaller step size"]);
@@ -492,7 +492,7 @@ fn an_end_momentum_without_velocity_is_reported() {
         panic!("{error:?}");
     };
     assert_eq!((t, corrections), (1.0, 30));
-    assert!(last_correction.is_finite() && last_correction > 1e-3, "{error:?}");
+    assert!(last_correction.is_finite() && last_correction > 1e-4, "{error:?}");
     check_text(&error, &["t = 1", "did not converge", "after 30"]);
 }
 

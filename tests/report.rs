@@ -137,6 +137,14 @@ fn a_constant_mass_has_no_varying_entries() {
         [0; 3]
     );
     assert_eq!(of(DoublePendulumInAngles::STRUCTURE), 1, "only the coupling of the angles varies");
+    // Nor does evaluating a mass that is a product of parameters cost an operation.
+    let KernelOperations { lagrangian_gradient, lagrangian_derivatives, .. } =
+        HarmonicOscillator::STRUCTURE.operations;
+    assert_eq!(lagrangian_derivatives, lagrangian_gradient);
+    let left_out =
+        |report: SystemReport| report.left_out().any(|line| line.starts_with("mass matrix: constant"));
+    assert!(left_out(DoublePendulum::REPORT) && left_out(Pendulum::REPORT));
+    assert!(!left_out(DoublePendulumInAngles::REPORT));
 }
 
 /// The double pendulum with fields that no equation names.

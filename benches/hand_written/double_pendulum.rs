@@ -1,125 +1,175 @@
-//! The double pendulum's RATTLE step (= the midpoint member at `u = 0`) as an expert would write it for this scene alone:
-//! two multipliers, extrapolated from the previous steps, one inverse per step, chord iterations to round-off.
+//! The double pendulum in its rod vectors `a` (inner) and `b` (outer), in which uniform gravity acts on `a` alone and the
+//! constraints are `|a|² = l₁²`, `|b|² = l₂²`. Scaled multipliers `μ, ν` pull along the rods:
+//!
+//! ```text
+//! a' = a + wₐ − (μ a − ν b)      b' = b + w_b + (μ a − β ν b)      β = 1 + m₁/m₂
+//! ```
+//!
+//! From an extrapolated `(μ₀, ν₀)`, the constraints are quadratic polynomials of the correction, `f − 2K(δ, ε) + Q(δ, ε)` with
+//! `Q₁ = |δ a − ε b|²` and `Q₂ = |δ a − β ε b|²`. After one correction `Q` is left, exactly; where it is not round-off, a second one
+//! needs no evaluation of the constraints.
 
 use evi_examples::{DoublePendulum, Start};
 
-/// The run: positions, velocities, and what is constant or remembered.
-pub(crate) struct HandWritten {
-    q: [f64; 4],
-    v: [f64; 4],
-    /// `2 h² / m` of the two bobs: displacement per multiplier and unit of the rod vector.
-    reach: [f64; 2],
-    inverse_mass: [f64; 2],
-    squared_length: [f64; 2],
+use super::{HandWritten, MAX_CORRECTIONS, are_finite, difference, dot, extrapolated, sum, times};
+
+/// A run of the double pendulum.
+pub struct HandWrittenDoublePendulum {
+    /// Rod vectors.
+    a: [f64; 2],
+    b: [f64; 2],
+    /// Their velocities times `h`.
+    wa: [f64; 2],
+    wb: [f64; 2],
     h: f64,
-    /// Displacement and velocity change by gravity in half a step.
+    /// `h² g / 2`.
     fall: f64,
-    kick: f64,
-    /// Multipliers of the last three steps, newest first.
-    previous: [[f64; 2]; 3],
-    tolerance: f64,
+    /// `β`.
+    mass_ratio: f64,
+    /// `l₁²`, `l₂²`.
+    squared_lengths: [f64; 2],
+    /// `β l₂²`.
+    outer: f64,
+    /// `β l₁² l₂²`.
+    both: f64,
+    /// `Q₁` and `Q₂` are below `bounds[0] δ² + bounds[1] ε²`.
+    bounds: [f64; 2],
+    /// A residual below this is round-off.
+    round_off: f64,
+    /// `(μ, ν)` of the last four steps, newest first.
+    multipliers: [[f64; 4]; 2],
 }
 
-impl HandWritten {
-    /// A run from rest.
-    pub(crate) fn new(system: &DoublePendulum, start: Start<4>, h: f64) -> Self {
+/// Half the slopes of the constraints by the multipliers, but for the sign, inverted but for the factor: `K⁻¹ = 2 r adj K`.
+struct Slopes {
+    adjugate: [[f64; 2]; 2],
+    r: f64,
+}
+
+impl Slopes {
+    /// `(δ, ε)` that removes the residual `f` of the constraints.
+    #[inline(always)]
+    fn correction(&self, f: [f64; 2]) -> [f64; 2] {
+        self.adjugate.map(|row| dot(row, f) * self.r)
+    }
+}
+
+impl HandWrittenDoublePendulum {
+    /// A run from a consistent start.
+    pub fn new(system: &DoublePendulum, start: Start<4>, h: f64) -> Self {
+        let ([x1, y1, x2, y2], [vx1, vy1, vx2, vy2]) = (start.q, start.v);
+        let mass_ratio = 1.0 + system.m1 / system.m2;
+        let squared_lengths = [system.l1 * system.l1, system.l2 * system.l2];
         Self {
-            q: start.q,
-            v: start.v,
-            reach: [2.0 * h * h / system.m1, 2.0 * h * h / system.m2],
-            inverse_mass: [1.0 / system.m1, 1.0 / system.m2],
-            squared_length: [system.l1 * system.l1, system.l2 * system.l2],
+            a: [x1, y1],
+            b: [x2 - x1, y2 - y1],
+            wa: [h * vx1, h * vy1],
+            wb: [h * (vx2 - vx1), h * (vy2 - vy1)],
             h,
             fall: 0.5 * h * h * system.g,
-            kick: 0.5 * h * system.g,
-            previous: [[0.0; 2]; 3],
-            tolerance: 0.25 * f64::EPSILON * (system.l1 + system.l2).powi(2),
+            mass_ratio,
+            squared_lengths,
+            outer: mass_ratio * squared_lengths[1],
+            both: mass_ratio * squared_lengths[0] * squared_lengths[1],
+            bounds: [2.0 * squared_lengths[0], 2.0 * mass_ratio * mass_ratio * squared_lengths[1]],
+            round_off: 0.25 * f64::EPSILON * squared_lengths[0].min(squared_lengths[1]),
+            multipliers: [[0.0; 4]; 2],
         }
     }
 
-    /// Positions.
-    pub(crate) fn q(&self) -> &[f64; 4] {
-        &self.q
+    /// What the multipliers `(μ, ν)` add to `−wₐ` and to `w_b`.
+    #[inline(always)]
+    fn pull(&self, [mu, nu]: [f64; 2]) -> [[f64; 2]; 2] {
+        let along_a = times(mu, self.a);
+        [difference(along_a, times(nu, self.b)), difference(along_a, times(self.mass_ratio * nu, self.b))]
     }
 
-    /// One step; `false` if the multipliers did not converge.
-    #[inline]
-    pub(crate) fn advance(&mut self) -> bool {
-        let [x1, y1, x2, y2] = self.q;
-        let (dx, dy) = (x2 - x1, y2 - y1);
-        let (a1, a2) = (self.reach[0], self.reach[1]);
-        let free = [
-            x1 + self.h * self.v[0],
-            y1 + self.h * self.v[1] - self.fall,
-            x2 + self.h * self.v[2],
-            y2 + self.h * self.v[3] - self.fall,
-        ];
-        let [p0, p1, p2] = self.previous;
-        let mut l = [3.0 * (p0[0] - p1[0]) + p2[0], 3.0 * (p0[1] - p1[1]) + p2[1]];
-        let mut inverse = [0.0; 4];
-        let mut previous_size = 0.0;
-        let mut iteration = 0;
-        let (q, ex, ey) = loop {
-            let q = [
-                free[0] - a1 * (l[0] * x1 - l[1] * dx),
-                free[1] - a1 * (l[0] * y1 - l[1] * dy),
-                free[2] - a2 * l[1] * dx,
-                free[3] - a2 * l[1] * dy,
-            ];
-            let (ex, ey) = (q[2] - q[0], q[3] - q[1]);
-            let f1 = q[0] * q[0] + q[1] * q[1] - self.squared_length[0];
-            let f2 = ex * ex + ey * ey - self.squared_length[1];
-            let size = f1.abs().max(f2.abs());
-            if iteration == 0 {
-                let j11 = 2.0 * a1 * (q[0] * x1 + q[1] * y1);
-                let j12 = -2.0 * a1 * (q[0] * dx + q[1] * dy);
-                let j21 = -2.0 * a1 * (ex * x1 + ey * y1);
-                let j22 = 2.0 * (a1 + a2) * (ex * dx + ey * dy);
-                let r = 1.0 / (j11 * j22 - j12 * j21);
-                inverse = [j22 * r, -j12 * r, -j21 * r, j11 * r];
+    /// Residuals of the constraints and their slopes at the ends `a'`, `b'` of the rods.
+    #[inline(always)]
+    fn linearize(&self, end_a: [f64; 2], end_b: [f64; 2]) -> ([f64; 2], Slopes) {
+        let residual =
+            [dot(end_a, end_a) - self.squared_lengths[0], dot(end_b, end_b) - self.squared_lengths[1]];
+        let (aa, ab) = (dot(end_a, self.a), dot(end_a, self.b));
+        let (ba, bb) = (dot(end_b, self.a), self.mass_ratio * dot(end_b, self.b));
+        (residual, Slopes { adjugate: [[bb, ab], [ba, aa]], r: 0.5 / (aa * bb - ab * ba) })
+    }
+
+    /// `(δ, ε)` by Newton's iteration with fresh slopes for every correction, and the number of corrections.
+    #[cold]
+    fn solve_anew(&self, wa: [f64; 2], wb: [f64; 2]) -> Option<([f64; 2], u32)> {
+        let mut delta = [0.0; 2];
+        let mut previous = 0.0;
+        for correction in 1..=MAX_CORRECTIONS {
+            let [pull_a, pull_b] = self.pull(delta);
+            let end_a = sum(self.a, difference(wa, pull_a));
+            let end_b = sum(self.b, sum(wb, pull_b));
+            let (f, slopes) = self.linearize(end_a, end_b);
+            delta = sum(delta, slopes.correction(f));
+            let size = f[0].abs() + f[1].abs();
+            if size <= 16.0 * self.round_off || size * size <= self.round_off * previous {
+                return Some((delta, correction));
             }
-            // The correction after this one would be below round-off.
-            let last = size <= self.tolerance || size * size <= self.tolerance * previous_size;
-            l[0] += inverse[0] * f1 + inverse[1] * f2;
-            l[1] += inverse[2] * f1 + inverse[3] * f2;
-            if last {
-                let q = [
-                    free[0] - a1 * (l[0] * x1 - l[1] * dx),
-                    free[1] - a1 * (l[0] * y1 - l[1] * dy),
-                    free[2] - a2 * l[1] * dx,
-                    free[3] - a2 * l[1] * dy,
-                ];
-                break (q, q[2] - q[0], q[3] - q[1]);
+            previous = size;
+        }
+        None
+    }
+}
+
+impl HandWritten<4> for HandWrittenDoublePendulum {
+    #[inline(always)]
+    fn advance(&mut self) -> Option<u32> {
+        let guess = self.multipliers.map(extrapolated);
+        let [pull_a, pull_b] = self.pull(guess);
+        let wa = [self.wa[0] - pull_a[0], self.wa[1] - (self.fall + pull_a[1])];
+        let wb = sum(self.wb, pull_b);
+        let (f, slopes) = self.linearize(sum(self.a, wa), sum(self.b, wb));
+        let mut delta = slopes.correction(f);
+        let mut corrections = 1;
+        let is_round_off =
+            self.bounds[0] * (delta[0] * delta[0]) + self.bounds[1] * (delta[1] * delta[1]) <= self.round_off;
+        if !is_round_off {
+            let first = self.pull(delta);
+            let correction = slopes.correction(first.map(|pull| dot(pull, pull)));
+            let second = self.pull(correction);
+            delta = sum(delta, correction);
+            corrections = 2;
+            // What is left now: Q of both corrections together, less Q of the first.
+            let left = |i: usize| dot(sum(times(2.0, first[i]), second[i]), second[i]).abs();
+            let converged = left(0).max(left(1)) <= self.round_off;
+            if !converged {
+                (delta, corrections) = self.solve_anew(wa, wb)?;
             }
-            previous_size = size;
-            iteration += 1;
-            if iteration > 20 {
-                return false;
-            }
-        };
-        let inverse_h = 1.0 / self.h;
-        let mut v = [
-            (q[0] - x1) * inverse_h,
-            (q[1] - y1) * inverse_h - self.kick,
-            (q[2] - x2) * inverse_h,
-            (q[3] - y2) * inverse_h - self.kick,
-        ];
-        let (i1, i2) = (self.inverse_mass[0], self.inverse_mass[1]);
-        let g1 = q[0] * v[0] + q[1] * v[1];
-        let g2 = ex * (v[2] - v[0]) + ey * (v[3] - v[1]);
-        let s11 = i1 * (q[0] * q[0] + q[1] * q[1]);
-        let s12 = -i1 * (q[0] * ex + q[1] * ey);
-        let s22 = (i1 + i2) * (ex * ex + ey * ey);
-        let r = 1.0 / (s11 * s22 - s12 * s12);
-        let n1 = (s22 * g1 - s12 * g2) * r;
-        let n2 = (s11 * g2 - s12 * g1) * r;
-        v[0] -= i1 * (n1 * q[0] - n2 * ex);
-        v[1] -= i1 * (n1 * q[1] - n2 * ey);
-        v[2] -= i2 * n2 * ex;
-        v[3] -= i2 * n2 * ey;
-        self.q = q;
-        self.v = v;
-        self.previous = [l, p0, p1];
-        true
+        }
+        let [pull_a, pull_b] = self.pull(delta);
+        let (wa, wb) = (difference(wa, pull_a), sum(wb, pull_b));
+        let (a, b) = (sum(self.a, wa), sum(self.b, wb));
+
+        // The end of gravity's kick, and the impulses (n₁, n₂) that keep the velocities on the constraints.
+        let wa = [wa[0], wa[1] - self.fall];
+        let rates = [dot(a, wa), dot(b, wb)];
+        let cosine = dot(a, b);
+        let r = 1.0 / (self.both - cosine * cosine);
+        let along_a = times((self.outer * rates[0] + cosine * rates[1]) * r, a);
+        let n2 = (self.squared_lengths[0] * rates[1] + cosine * rates[0]) * r;
+        let wa = difference(wa, difference(along_a, times(n2, b)));
+        let wb = sum(wb, difference(along_a, times(self.mass_ratio * n2, b)));
+        if !are_finite([a, b, wa, wb]) {
+            return None;
+        }
+        (self.a, self.b, self.wa, self.wb) = (a, b, wa, wb);
+        for (history, (guess, delta)) in self.multipliers.iter_mut().zip(guess.into_iter().zip(delta)) {
+            *history = [guess + delta, history[0], history[1], history[2]];
+        }
+        Some(corrections)
+    }
+
+    fn q(&self) -> [f64; 4] {
+        [self.a[0], self.a[1], self.a[0] + self.b[0], self.a[1] + self.b[1]]
+    }
+
+    fn v(&self) -> [f64; 4] {
+        let [ax, ay] = self.wa.map(|w| w / self.h);
+        let [bx, by] = self.wb.map(|w| w / self.h);
+        [ax, ay, ax + bx, ay + by]
     }
 }

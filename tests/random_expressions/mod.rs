@@ -136,8 +136,8 @@ pub(crate) fn random_system(name: &str, seed: u64) -> String {
 /// products of sines and cosines, each with a factor of its own that depends on parameters, and a constraint
 /// of as many.
 pub(crate) fn large_system(name: &str, n_terms: usize) -> String {
-    /// Terms per `let`: the nesting of a sum is a depth of recursion, for rustc too.
-    const TERMS_PER_SUM: usize = 20;
+    /// Terms per `let`: more than the generic copy holds in one piece.
+    const TERMS_PER_SUM: usize = 120;
     let mut random = SplitMix::new(0);
     let mut number = move || format!("{:.3}", random.between(0.2, 1.5));
     let mut sums = |prefix: &str, last: &str| -> (String, String) {

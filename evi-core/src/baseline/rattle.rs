@@ -1,10 +1,10 @@
 //! RATTLE, in its classical velocity form.
 
 use crate::array::Array;
-use crate::integrator::{IterationFailure, OneStep, Scheme, StepError, Symmetric};
+use crate::integrator::{IterationFailure, OneStep, Scheme, StepError, Symmetric, Tally};
 use crate::linear::{Factorization, SingularMatrix, largest_magnitude};
-use crate::mechanics::{Mechanics, ProjectionError, State, relative};
-use crate::newton;
+use crate::mechanics::{CoordinateMatrix, Mechanics, ProjectionError, State, relative};
+use crate::newton::{self, Converged};
 use crate::scheme::{SchemeError, checked_step_size};
 use crate::system::MechanicalSystem;
 
@@ -52,25 +52,17 @@ impl<S: MechanicalSystem> Scheme<S> for Rattle {
             let requirement = "a constant mass matrix and no coupling of velocity with position or time";
             return Err(SchemeError::UnsupportedStructure { scheme: SCHEME, requirement });
         }
-        let at_rest = Array::from_fn(|_| 0.0);
-        let (_, hessian) = S::lagrangian_derivatives(&mechanics.constants, 0.0, &at_rest, &at_rest);
-        let mut mass: S::PerCoordinate<S::PerCoordinate<f64>> = Array::from_fn(|_| Array::from_fn(|_| 0.0));
-        for entry in S::STRUCTURE.hessian.vv {
-            let value = entry.value(mechanics.constants.as_ref(), hessian.as_ref());
-            mass[entry.row][entry.col] = value;
-            mass[entry.col][entry.row] = value;
-        }
         let requirement = "a mass matrix that is regular, not only on the constraints";
-        let mass = S::MassFactors::factor(&mass)
+        let inverse_mass = CoordinateMatrix::inverse_of(&mechanics.constant_mass())
             .map_err(|_| SchemeError::UnsupportedStructure { scheme: SCHEME, requirement })?;
-        Ok(RattleStep { mechanics, mass, h })
+        Ok(RattleStep { mechanics, inverse_mass, h })
     }
 }
 
 /// The one-step map of [`Rattle`].
 pub struct RattleStep<S: MechanicalSystem> {
     mechanics: Mechanics<S>,
-    mass: S::MassFactors,
+    inverse_mass: CoordinateMatrix<S>,
     h: f64,
 }
 
@@ -83,12 +75,12 @@ impl<S: MechanicalSystem> OneStep<S> for RattleStep<S> {
         &self.mechanics
     }
 
-    fn advance(&mut self, state: &mut State<S>) -> Result<(), StepError> {
+    fn advance(&mut self, state: &mut State<S>, tally: &mut impl Tally) -> Result<(), StepError> {
         let t = state.t + self.h;
         let mut half_step_velocity = self.kicked(state.t, &state.q, &state.v);
-        let q = self.solve_positions(state, &mut half_step_velocity)?;
+        let q = self.solve_positions(state, &mut half_step_velocity, tally)?;
         let mut v = self.kicked(t, &q, &half_step_velocity);
-        self.project(t, &q, &mut v)
+        self.project(t, &q, &mut v, tally)
             .map_err(|cause| StepError::Projection { t, cause: ProjectionError::Singular(cause) })?;
         let p = self.mechanics.momentum_at(t, &q, &v);
         state.replace(t, q, v, p)
@@ -98,8 +90,8 @@ impl<S: MechanicalSystem> OneStep<S> for RattleStep<S> {
 impl<S: MechanicalSystem> RattleStep<S> {
     /// `v + ½h M⁻¹ f(t, q)`.
     fn kicked(&self, t: f64, q: &S::PerCoordinate<f64>, v: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
-        let mut kick = S::lagrangian_gradient(&self.mechanics.constants, t, q, v).force;
-        self.mass.solve(&mut kick);
+        let force = S::lagrangian_gradient(&self.mechanics.constants, t, q, v).force;
+        let kick = self.inverse_mass.times(|i| force[i]);
         Array::from_fn(|i| v[i] + 0.5 * self.h * kick[i])
     }
 
@@ -108,22 +100,24 @@ impl<S: MechanicalSystem> RattleStep<S> {
         &self,
         state: &State<S>,
         v: &mut S::PerCoordinate<f64>,
+        tally: &mut impl Tally,
     ) -> Result<S::PerCoordinate<f64>, StepError> {
         let (h, t) = (self.h, state.t + self.h);
         let constants = &self.mechanics.constants;
         let (_, jacobian) = S::constraint_derivatives(constants, state.t, &state.q);
-        let directions = self.mechanics.constraint_directions(&jacobian, |x| self.inverse_mass_times(x));
+        let directions = self.mechanics.constraint_directions(&jacobian, &self.inverse_mass);
         let mut q = S::PerCoordinate::<f64>::from_fn(|i| state.q[i] + h * v[i]);
         let mut constraint_residual = 0.0;
         let mut smallest_pivot_ratio = 1.0_f64;
         let iteration = newton::iterate(|correction| {
             let (mut impulse, jacobian) = S::constraint_derivatives(constants, t, &q);
             constraint_residual = largest_magnitude(impulse.as_ref().iter().copied());
-            let gram = self
-                .mechanics
-                .factor_gram(&jacobian, &directions)
+            let gram = S::GramFactors::factor(&self.mechanics.gram_matrix(&jacobian, &directions))
                 .map_err(|matrix| IterationFailure::Singular { correction, matrix })?;
             smallest_pivot_ratio = smallest_pivot_ratio.min(gram.pivot_ratio());
+            if gram.is_fallback() {
+                tally.count_fallback();
+            }
             gram.solve(&mut impulse);
             let displacement = S::PerCoordinate::<f64>::from_fn(|i| {
                 (0..S::N_CONSTRAINTS).map(|c| directions[c][i] * impulse[c]).sum()
@@ -136,7 +130,10 @@ impl<S: MechanicalSystem> RattleStep<S> {
             Ok(relative(length, largest_magnitude(q.as_ref().iter().copied())))
         });
         match iteration {
-            Ok(_) => Ok(q),
+            Ok(Converged { corrections }) => {
+                tally.count_corrections(corrections);
+                Ok(q)
+            }
             Err(failure) => {
                 Err(IterationFailure::at(failure, state.t, constraint_residual, smallest_pivot_ratio))
             }
@@ -149,21 +146,19 @@ impl<S: MechanicalSystem> RattleStep<S> {
         t: f64,
         q: &S::PerCoordinate<f64>,
         v: &mut S::PerCoordinate<f64>,
+        tally: &mut impl Tally,
     ) -> Result<(), SingularMatrix> {
         let (_, jacobian) = S::constraint_derivatives(&self.mechanics.constants, t, q);
-        let directions = self.mechanics.constraint_directions(&jacobian, |x| self.inverse_mass_times(x));
+        let directions = self.mechanics.constraint_directions(&jacobian, &self.inverse_mass);
         let mut impulse = self.mechanics.constraint_rate(jacobian.as_ref(), v);
-        self.mechanics.factor_gram(&jacobian, &directions)?.solve(&mut impulse);
+        let gram = S::GramFactors::factor(&self.mechanics.gram_matrix(&jacobian, &directions))?;
+        if gram.is_fallback() {
+            tally.count_fallback();
+        }
+        gram.solve(&mut impulse);
         for i in 0..S::N_COORDINATES {
             v[i] -= (0..S::N_CONSTRAINTS).map(|c| directions[c][i] * impulse[c]).sum::<f64>();
         }
         Ok(())
-    }
-
-    /// `M⁻¹ x`.
-    fn inverse_mass_times(&self, x: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
-        let mut x = x.clone();
-        self.mass.solve(&mut x);
-        x
     }
 }

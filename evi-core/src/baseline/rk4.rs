@@ -1,7 +1,7 @@
 //! The classical Runge-Kutta method on the index-1 equations.
 
 use crate::array::Array;
-use crate::integrator::{OneStep, Scheme, StepError};
+use crate::integrator::{OneStep, Scheme, StepError, Tally};
 use crate::mechanics::{Mechanics, State};
 use crate::scheme::{SchemeError, checked_step_size};
 use crate::system::MechanicalSystem;
@@ -47,20 +47,26 @@ impl<S: MechanicalSystem> Rk4Step<S> {
         t: f64,
         q: &S::PerCoordinate<f64>,
         v: S::PerCoordinate<f64>,
+        tally: &mut impl Tally,
     ) -> Result<Slope<S>, StepError> {
-        let acceleration = self.mechanics.acceleration(t, q, &v).map_err(|matrix| StepError::Singular {
-            t,
-            correction: 0,
-            matrix,
-        })?;
+        let acceleration = self
+            .mechanics
+            .acceleration_tallied(t, q, &v, tally)
+            .map_err(|matrix| StepError::Singular { t, correction: 0, matrix })?;
         Ok(Slope { v: acceleration.acceleration, q: v })
     }
 
     /// The slope at the end of a line of length `length` along `along`.
-    fn slope_after(&self, state: &State<S>, length: f64, along: &Slope<S>) -> Result<Slope<S>, StepError> {
+    fn slope_after(
+        &self,
+        state: &State<S>,
+        length: f64,
+        along: &Slope<S>,
+        tally: &mut impl Tally,
+    ) -> Result<Slope<S>, StepError> {
         let q = Array::from_fn(|i| state.q[i] + length * along.q[i]);
         let v = Array::from_fn(|i| state.v[i] + length * along.v[i]);
-        self.slope(state.t + length, &q, v)
+        self.slope(state.t + length, &q, v, tally)
     }
 }
 
@@ -73,12 +79,12 @@ impl<S: MechanicalSystem> OneStep<S> for Rk4Step<S> {
         &self.mechanics
     }
 
-    fn advance(&mut self, state: &mut State<S>) -> Result<(), StepError> {
+    fn advance(&mut self, state: &mut State<S>, tally: &mut impl Tally) -> Result<(), StepError> {
         let h = self.h;
-        let k1 = self.slope(state.t, &state.q, state.v.clone())?;
-        let k2 = self.slope_after(state, 0.5 * h, &k1)?;
-        let k3 = self.slope_after(state, 0.5 * h, &k2)?;
-        let k4 = self.slope_after(state, h, &k3)?;
+        let k1 = self.slope(state.t, &state.q, state.v.clone(), tally)?;
+        let k2 = self.slope_after(state, 0.5 * h, &k1, tally)?;
+        let k3 = self.slope_after(state, 0.5 * h, &k2, tally)?;
+        let k4 = self.slope_after(state, h, &k3, tally)?;
         let mean = |k1: f64, k2: f64, k3: f64, k4: f64| (k1 + 2.0 * (k2 + k3) + k4) / 6.0;
         let t = state.t + h;
         let q = Array::from_fn(|i| state.q[i] + h * mean(k1.q[i], k2.q[i], k3.q[i], k4.q[i]));

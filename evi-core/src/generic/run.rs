@@ -12,6 +12,7 @@ use crate::comparison::Solver;
 use crate::integrator::{CONSISTENCY, ConstraintLabel, StartError, StepError, steps_between};
 use crate::linear::SingularMatrix;
 use crate::mechanics::relative;
+use crate::newton::Statistics;
 
 /// A system, the one-step map of a [`GenericEvi`] for it, and the state that it has reached.
 ///
@@ -135,6 +136,11 @@ impl<S: GenericSystem> GenericRun<S> {
     /// Number of steps taken.
     pub const fn steps(&self) -> u64 {
         self.steps
+    }
+
+    /// Newton's corrections under the steps taken. Every solve is the pivoted dense one: no fallbacks.
+    pub const fn statistics(&self) -> Statistics {
+        self.step.statistics
     }
 
     /// Energy `H = v·∂L/∂v − L` of the state reached.

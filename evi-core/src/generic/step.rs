@@ -19,7 +19,7 @@ use super::scheme::Nodes;
 use crate::integrator::{IterationFailure, StepError};
 use crate::linear::largest_magnitude;
 use crate::mechanics::relative;
-use crate::newton;
+use crate::newton::{self, Converged, Statistics, Tally};
 
 /// A point of a motion; constraints and hidden constraints hold to round-off.
 pub(super) struct GenericState {
@@ -58,6 +58,7 @@ pub(super) struct GenericStep<S> {
     /// Position and velocity at a node.
     x: Vec<f64>,
     v: Vec<f64>,
+    pub(super) statistics: Statistics,
 }
 
 impl<S: GenericSystem> GenericStep<S> {
@@ -73,6 +74,7 @@ impl<S: GenericSystem> GenericStep<S> {
             difference: vec![0.0; n],
             x: vec![0.0; n],
             v: vec![0.0; n],
+            statistics: Statistics::default(),
         }
     }
 
@@ -121,7 +123,10 @@ impl<S: GenericSystem> GenericStep<S> {
             Ok(relative(self.kkt.scaled_length(&self.unknowns), scale))
         });
         match iteration {
-            Ok(_) => Ok(()),
+            Ok(Converged { corrections }) => {
+                self.statistics.count_corrections(corrections);
+                Ok(())
+            }
             Err(failure) => {
                 Err(IterationFailure::at(failure, state.t, constraint_residual, smallest_pivot_ratio))
             }

@@ -4,7 +4,7 @@
 //! scheme of the same step size, `Ψ_{γ_s h} ∘ … ∘ Ψ_{γ_1 h}`. Whatever the base keeps (symplectic form, momentum maps, constraints) the
 //! composition keeps. Some fractions are negative: those stages go back in time.
 
-use super::{OneStep, Scheme, StepError};
+use super::{OneStep, Scheme, StepError, Tally};
 use crate::mechanics::{Mechanics, State};
 use crate::scheme::SchemeError;
 use crate::system::MechanicalSystem;
@@ -211,12 +211,12 @@ impl<S: MechanicalSystem, M: OneStep<S>, const N: usize> OneStep<S> for Composed
     }
 
     #[inline]
-    fn advance(&mut self, state: &mut State<S>) -> Result<(), StepError> {
+    fn advance(&mut self, state: &mut State<S>, tally: &mut impl Tally) -> Result<(), StepError> {
         let mut reached = state.clone();
         for (stage, start) in self.stages.iter_mut().zip(&self.starts) {
             // Not what the stages before have added up: their roundings are felt by constraints that move.
             reached.t = state.t + start;
-            stage.advance(&mut reached)?;
+            stage.advance(&mut reached, tally)?;
         }
         reached.t = state.t + self.h;
         *state = reached;

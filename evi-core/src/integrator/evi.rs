@@ -4,8 +4,10 @@ use super::multipliers::MultiplierStep;
 use super::{IterationFailure, OneStep, Scheme, StepError, Symmetric};
 use crate::array::Array;
 use crate::linear::{constraint_index, largest_magnitude};
-use crate::mechanics::{DiscreteLagrangian, FoldedStep, Mechanics, Projected, State, StepStart, relative};
-use crate::newton;
+use crate::mechanics::{
+    ConstantLegendre, DiscreteLagrangian, FoldedStep, Mechanics, Projected, ProjectionError, State, StepStart,
+};
+use crate::newton::{self, Converged, Tally};
 use crate::scheme::{Frequency, Interpolant, Linear, Quadrature, SchemeError, checked_step_size};
 use crate::system::MechanicalSystem;
 
@@ -91,7 +93,9 @@ impl<S: MechanicalSystem, const K: usize, F: Interpolant<S>> Scheme<S> for Evi<K
         let action = DiscreteLagrangian::new(mechanics, table, self.quadrature, h);
         // Where M or A is singular, the constraints are needed to determine the motion: the general step uses them.
         let folded = if FoldedStep::<S>::EXISTS { FoldedStep::new(&action).ok() } else { None };
-        Ok(EviStep { action, folded: folded.map(MultiplierStep::new) })
+        let legendre =
+            if ConstantLegendre::<S>::EXISTS { ConstantLegendre::new(&action.mechanics).ok() } else { None };
+        Ok(EviStep { action, folded: folded.map(MultiplierStep::new), legendre })
     }
 }
 
@@ -100,7 +104,12 @@ pub struct EviStep<S: MechanicalSystem, F: Interpolant<S>, const K: usize> {
     action: DiscreteLagrangian<S, F::Table<K>, K>,
     /// The step of a quadratic Lagrangian.
     folded: Option<MultiplierStep<S>>,
+    /// The Legendre transform of a constant mass matrix.
+    legendre: Option<ConstantLegendre<S>>,
 }
+
+/// The unknowns `(d, Λ)` of the step equations.
+type Unknowns<S> = (<S as MechanicalSystem>::PerCoordinate<f64>, <S as MechanicalSystem>::PerConstraint<f64>);
 
 impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> OneStep<S> for EviStep<S, F, K> {
     fn h(&self) -> f64 {
@@ -112,22 +121,20 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> OneStep<S> for EviS
     }
 
     #[inline]
-    fn advance(&mut self, state: &mut State<S>) -> Result<(), StepError> {
+    fn advance(&mut self, state: &mut State<S>, tally: &mut impl Tally) -> Result<(), StepError> {
         if FoldedStep::<S>::EXISTS
             && let Some(folded) = &mut self.folded
         {
-            return folded.advance(&self.action.mechanics, F::IS_STRAIGHT, self.action.h(), state);
+            return folded.advance(&self.action.mechanics, F::IS_STRAIGHT, self.action.h(), state, tally);
         }
         let h = self.action.h();
         let start_of_curve = Array::from_fn(|i| h * state.v[i]);
-        let difference = self.solve(state.t, &state.q, &state.p, start_of_curve)?;
+        let (difference, impulse) = self.solve(state.t, &state.q, &state.p, start_of_curve, tally)?;
         let t = state.t + h;
         let q = Array::from_fn(|i| state.q[i] + difference[i]);
         let momentum = self.action.end_momentum(state.t, &state.q, &difference);
-        let mean_velocity = Array::from_fn(|i| difference[i] / h);
         let Projected { v, p } = self
-            .mechanics()
-            .project_momentum(t, &q, &momentum, mean_velocity)
+            .project(t, &q, momentum, &difference, &impulse, tally)
             .map_err(|cause| StepError::Projection { t, cause })?;
         state.replace(t, q, v, p)
     }
@@ -149,11 +156,38 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
         let difference = S::PerCoordinate::<f64>::from_fn(|i| q_curr[i] - q_prev[i]);
         // The part of this momentum normal to the constraints at q_curr goes into the impulse: no projection needed.
         let momentum = self.action.end_momentum(t_prev, q_prev, &difference);
-        let difference = self.solve(t_prev + self.action.h(), q_curr, &momentum, difference)?;
+        let (difference, _) = self.solve(t_prev + self.action.h(), q_curr, &momentum, difference, &mut ())?;
         Ok(Array::from_fn(|i| q_curr[i] + difference[i]))
     }
 
-    /// The difference `d = q₁ − q₀` of the step from `(q, p)`, by Newton's iteration from the guess `difference`.
+    /// Removes from `momentum` the impulse that leaves the constraints at the end of a step.
+    #[inline]
+    fn project(
+        &self,
+        t: f64,
+        q: &S::PerCoordinate<f64>,
+        momentum: S::PerCoordinate<f64>,
+        difference: &S::PerCoordinate<f64>,
+        impulse: &S::PerConstraint<f64>,
+        tally: &mut impl Tally,
+    ) -> Result<Projected<S>, ProjectionError> {
+        let (mechanics, h) = (self.mechanics(), self.action.h());
+        if ConstantLegendre::<S>::EXISTS
+            && let Some(legendre) = &self.legendre
+        {
+            if S::N_CONSTRAINTS == 0 {
+                return Ok(Projected { v: legendre.velocity(&momentum), p: momentum });
+            }
+            let (_, jacobian) = S::constraint_derivatives(&mechanics.constants, t, q);
+            let gram = legendre.factor_gram(mechanics, &jacobian, tally)?;
+            let expected = Array::from_fn(|c| impulse[c] / h);
+            return Ok(legendre.project(mechanics, &gram, &jacobian, &expected, momentum));
+        }
+        mechanics.project_momentum(t, q, &momentum, Array::from_fn(|i| difference[i] / h), tally)
+    }
+
+    /// The difference `d = q₁ − q₀` and the impulse `Λ` of the step from `(q, p)`, by Newton's iteration from the guess
+    /// `difference`.
     #[inline]
     fn solve(
         &self,
@@ -161,7 +195,8 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
         q: &S::PerCoordinate<f64>,
         p: &S::PerCoordinate<f64>,
         mut difference: S::PerCoordinate<f64>,
-    ) -> Result<S::PerCoordinate<f64>, StepError> {
+        tally: &mut impl Tally,
+    ) -> Result<Unknowns<S>, StepError> {
         let (_, jacobian) = S::constraint_derivatives(&self.mechanics().constants, t, q);
         let start = StepStart { t, q, p, jacobian };
         let mut impulse = S::PerConstraint::<f64>::from_fn(|_| 0.0);
@@ -173,6 +208,9 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
             constraint_residual = largest_magnitude(constraint_rows);
             let kkt = kkt.factor().map_err(|matrix| IterationFailure::Singular { correction, matrix })?;
             smallest_pivot_ratio = smallest_pivot_ratio.min(kkt.pivot_ratio());
+            if kkt.is_fallback() {
+                tally.count_fallback();
+            }
             let mut update = residual;
             kkt.solve(&mut update);
             for i in 0..S::N_COORDINATES {
@@ -181,11 +219,13 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
             for c in 0..S::N_CONSTRAINTS {
                 impulse[c] -= update[constraint_index::<S>(c)];
             }
-            let scale = kkt.scaled_length(q.as_ref()).max(kkt.scaled_length(difference.as_ref()));
-            Ok(relative(kkt.scaled_length(update.as_ref()), scale))
+            Ok(kkt.relative_length(|i| update[i], |i| q[i].abs() + difference[i].abs()))
         });
         match iteration {
-            Ok(_) => Ok(difference),
+            Ok(Converged { corrections }) => {
+                tally.count_corrections(corrections);
+                Ok((difference, impulse))
+            }
             Err(failure) => Err(IterationFailure::at(failure, t, constraint_residual, smallest_pivot_ratio)),
         }
     }

@@ -1,10 +1,10 @@
 //! Galerkin variational integrators: order `2K` in one step with inner points, each of them on the constraints.
 
-use super::{IterationFailure, OneStep, Scheme, StepError, Symmetric};
+use super::{IterationFailure, OneStep, Scheme, StepError, Symmetric, Tally};
 use crate::array::Array;
 use crate::linear::{InPlaceLu, constraint_index, largest_magnitude};
 use crate::mechanics::{GalerkinAction, Mechanics, Points, Projected, State, relative};
-use crate::newton;
+use crate::newton::{self, Converged};
 use crate::scheme::{Frequency, Linear, NodalCurves, NodalTables, SchemeError, checked_step_size};
 use crate::system::MechanicalSystem;
 
@@ -100,8 +100,8 @@ impl<S: MechanicalSystem, F: NodalCurves<S>, const K: usize> OneStep<S> for Gale
         &self.action.mechanics
     }
 
-    fn advance(&mut self, state: &mut State<S>) -> Result<(), StepError> {
-        let points = self.solve(state)?;
+    fn advance(&mut self, state: &mut State<S>, tally: &mut impl Tally) -> Result<(), StepError> {
+        let points = self.solve(state, tally)?;
         let t = state.t + self.action.h();
         let last = &points.differences[K - 1];
         let q = Array::from_fn(|i| state.q[i] + last[i]);
@@ -109,7 +109,7 @@ impl<S: MechanicalSystem, F: NodalCurves<S>, const K: usize> OneStep<S> for Gale
         let guess = self.action.velocity(&state.q, &points, K);
         let Projected { v, p } = self
             .mechanics()
-            .project_momentum(t, &q, &momentum, guess)
+            .project_momentum(t, &q, &momentum, guess, tally)
             .map_err(|cause| StepError::Projection { t, cause })?;
         state.replace(t, q, v, p)?;
         self.past = Some(points);
@@ -124,18 +124,18 @@ impl<S: MechanicalSystem, F: NodalCurves<S>, const K: usize> GalerkinStep<S, F, 
     /// At large steps a continued polynomial ends anywhere, and Newton's iteration from there at another solution of the
     /// equations (double pendulum from the horizontal, h = 0.1: the step equations are lost after 100 to 1,000 steps). Near the parabola
     /// it saves up to one correction in three for large `K`.
-    fn solve(&mut self, state: &State<S>) -> Result<Points<S, K>, StepError> {
+    fn solve(&mut self, state: &State<S>, tally: &mut impl Tally) -> Result<Points<S, K>, StepError> {
         let scale = self.mechanics().unit_scale(state.t, &state.q, &state.v);
         let mut points = self.parabola(state)?;
         if let Some(past) = &self.past {
             let mut continued = self.extrapolation.continued(past);
             if continued.is_near(&points, scale.as_ref())
-                && self.newton.iterate(&self.action, state, &scale, &mut continued).is_ok()
+                && self.newton.iterate(&self.action, state, &scale, &mut continued, tally).is_ok()
             {
                 return Ok(continued);
             }
         }
-        self.newton.iterate(&self.action, state, &scale, &mut points)?;
+        self.newton.iterate(&self.action, state, &scale, &mut points, tally)?;
         Ok(points)
     }
 
@@ -241,6 +241,7 @@ impl NewtonStorage {
         state: &State<S>,
         scale: &S::PerUnknown<f64>,
         points: &mut Points<S, K>,
+        tally: &mut impl Tally,
     ) -> Result<(), StepError> {
         let n = S::N_COORDINATES;
         let block = n + S::N_CONSTRAINTS;
@@ -280,8 +281,14 @@ impl NewtonStorage {
             }
             Ok(relative(length, reach))
         });
-        iteration.map(|_| ()).map_err(|failure: IterationFailure| {
-            failure.at(state.t, constraint_residual, smallest_pivot_ratio)
-        })
+        match iteration {
+            Ok(Converged { corrections }) => {
+                tally.count_corrections(corrections);
+                Ok(())
+            }
+            Err(failure) => {
+                Err(IterationFailure::at(failure, state.t, constraint_residual, smallest_pivot_ratio))
+            }
+        }
     }
 }

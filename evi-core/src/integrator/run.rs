@@ -2,9 +2,10 @@
 
 #[cfg(feature = "std")]
 use super::trajectory::{Interrupted, Trajectory};
-use super::{OneStep, StepError};
+use super::{OneStep, StepError, Tally};
 use crate::comparison::Solver;
 use crate::mechanics::{Mechanics, State};
+use crate::newton::Fallbacks;
 use crate::system::MechanicalSystem;
 
 /// Number of whole steps of size `h` nearest to the span from `t` to `target`; 0 if `target` lies on the other side.
@@ -23,17 +24,32 @@ pub(crate) fn steps_between(t: f64, target: f64, h: f64) -> Result<u64, StepErro
 /// A one-step map and the state that it has reached.
 ///
 /// A step that fails leaves the run at the last state that was reached.
-pub struct Run<S: MechanicalSystem, M> {
+pub struct Run<S: MechanicalSystem, M, T = Fallbacks> {
     map: M,
     state: State<S>,
     start_time: f64,
     steps: u64,
+    tally: T,
 }
 
 impl<S: MechanicalSystem, M: OneStep<S>> Run<S, M> {
-    pub(crate) const fn new(map: M, state: State<S>) -> Self {
+    pub(crate) fn new(map: M, state: State<S>) -> Self {
         let start_time = state.t;
-        Self { map, state, start_time, steps: 0 }
+        Self { map, state, start_time, steps: 0, tally: Fallbacks::default() }
+    }
+}
+
+impl<S: MechanicalSystem, M: OneStep<S>, T: Tally> Run<S, M, T> {
+    /// The run from where it stands, with another tally of what happens inside its steps:
+    /// `run.with_tally(Statistics::default())` counts Newton's corrections too.
+    pub fn with_tally<U: Tally>(self, tally: U) -> Run<S, M, U> {
+        let Self { map, state, start_time, steps, .. } = self;
+        Run { map, state, start_time, steps, tally }
+    }
+
+    /// What has happened inside the steps, the failed one included; without more ado, how often the pivoted dense solve had to help.
+    pub const fn tally(&self) -> &T {
+        &self.tally
     }
 
     /// The state reached.
@@ -67,10 +83,11 @@ impl<S: MechanicalSystem, M: OneStep<S>> Run<S, M> {
     /// [`StepError`]; the run then stands where it stood.
     #[inline]
     pub fn advance(&mut self) -> Result<&State<S>, StepError> {
-        self.map.advance(&mut self.state)?;
+        self.map.advance(&mut self.state, &mut self.tally)?;
         self.steps += 1;
         // A product, since a sum of 1e6 step sizes loses six digits.
-        self.state.t = self.start_time + self.steps as f64 * self.map.h();
+        // The cast of a signed number is one instruction; no run has 2⁶³ steps.
+        self.state.t = self.start_time + self.steps as i64 as f64 * self.map.h();
         Ok(&self.state)
     }
 
@@ -112,7 +129,7 @@ impl<S: MechanicalSystem, M: OneStep<S>> Run<S, M> {
     }
 }
 
-impl<S: MechanicalSystem, M: OneStep<S>> Solver for Run<S, M> {
+impl<S: MechanicalSystem, M: OneStep<S>, T: Tally> Solver for Run<S, M, T> {
     fn t(&self) -> f64 {
         self.state.t
     }

@@ -15,6 +15,11 @@ impl Factorization<[f64; 0], [[f64; 0]; 0]> for Inverse0 {
     }
 
     #[inline]
+    fn factor_unscaled(matrix: &[[f64; 0]; 0]) -> Option<Self> {
+        Self::factor(matrix).ok()
+    }
+
+    #[inline]
     fn solve(&self, _: &mut [f64; 0]) {}
 
     #[inline]
@@ -34,6 +39,11 @@ impl Factorization<[f64; 1], [[f64; 1]; 1]> for Inverse1 {
     }
 
     #[inline]
+    fn factor_unscaled(matrix: &[[f64; 1]; 1]) -> Option<Self> {
+        Self::factor(matrix).ok()
+    }
+
+    #[inline]
     fn solve(&self, [b]: &mut [f64; 1]) {
         *b *= self.0;
     }
@@ -44,21 +54,23 @@ impl Factorization<[f64; 1], [[f64; 1]; 1]> for Inverse1 {
     }
 }
 
-/// The inverse of a 2 × 2 matrix by its determinant: one division, where elimination waits for two.
+/// A 2 × 2 matrix by its adjugate and its determinant: one division, where elimination waits for two, and none of the
+/// products waits for it.
 pub struct Inverse2 {
-    inverse: [[f64; 2]; 2],
-    pivot_ratio: f64,
+    matrix: [[f64; 2]; 2],
+    reciprocal_determinant: f64,
+    /// Sum of the magnitudes of the determinant's terms.
+    magnitude: f64,
 }
 
 impl Factorization<[f64; 2], [[f64; 2]; 2]> for Inverse2 {
     #[inline]
-    fn factor([[a, b], [c, d]]: &[[f64; 2]; 2]) -> Result<Self, SingularMatrix> {
+    fn factor(&matrix: &[[f64; 2]; 2]) -> Result<Self, SingularMatrix> {
+        let [[a, b], [c, d]] = matrix;
         let (main, other) = (a * d, b * c);
         let (determinant, magnitude) = (main - other, main.abs() + other.abs());
         if determinant.abs() > SMALLEST_DETERMINANT * magnitude {
-            let r = 1.0 / determinant;
-            let pivot_ratio = determinant.abs() / magnitude;
-            Ok(Self { inverse: [[d * r, -b * r], [-c * r, a * r]], pivot_ratio })
+            Ok(Self { matrix, reciprocal_determinant: 1.0 / determinant, magnitude })
         } else {
             // 0 for the zero matrix, NaN where an entry is.
             Err(SingularMatrix {
@@ -68,13 +80,18 @@ impl Factorization<[f64; 2], [[f64; 2]; 2]> for Inverse2 {
     }
 
     #[inline]
+    fn factor_unscaled(matrix: &[[f64; 2]; 2]) -> Option<Self> {
+        Self::factor(matrix).ok()
+    }
+
+    #[inline]
     fn solve(&self, x: &mut [f64; 2]) {
-        let [[a, b], [c, d]] = self.inverse;
-        *x = [a * x[0] + b * x[1], c * x[0] + d * x[1]];
+        let ([[a, b], [c, d]], r) = (self.matrix, self.reciprocal_determinant);
+        *x = [(d * x[0] - b * x[1]) * r, (a * x[1] - c * x[0]) * r];
     }
 
     #[inline]
     fn pivot_ratio(&self) -> f64 {
-        self.pivot_ratio
+        1.0 / (self.reciprocal_determinant.abs() * self.magnitude)
     }
 }

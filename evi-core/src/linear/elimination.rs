@@ -48,6 +48,11 @@ where
     }
 
     #[inline]
+    fn factor_unscaled(matrix: &[[f64; D]; D]) -> Option<Self> {
+        E::factor(matrix).map(Self::Own)
+    }
+
+    #[inline]
     fn solve(&self, rhs: &mut [f64; D]) {
         match self {
             Self::Own(own) => own.solve(rhs),
@@ -60,6 +65,11 @@ where
             Self::Own(_) => 1.0,
             Self::Dense(dense) => dense.pivot_ratio(),
         }
+    }
+
+    #[inline(always)]
+    fn is_fallback(&self) -> bool {
+        matches!(self, Self::Dense(_))
     }
 }
 

@@ -5,9 +5,10 @@
 //! [ G₁  0   ] [ y ] = [ b ]
 //! ```
 //!
-//! Coordinates may be metres, radians or both; masses may differ by many powers of ten. The scaled matrix
-//! `D K D` has a unit diagonal in `A` and unit rows in `G₀` in the metric of `A`, so that its unknowns all carry the
-//! unit of √A·q and pivots can be compared. `D` holds powers of two: scaling commits no rounding error.
+//! Coordinates may be metres, radians or both; masses may differ by many powers of ten. The scene's own elimination judges
+//! each pivot by its own terms and takes the matrix as it is. Where pivots are compared with each other, the scaled matrix
+//! `D K D` takes its place: it has a unit diagonal in `A` and unit rows in `G₀` in the metric of `A`, so that its unknowns all
+//! carry the unit of √A·q. `D` holds powers of two: scaling commits no rounding error.
 
 use super::{Factorization, SingularMatrix, largest_magnitude};
 use crate::array::Array;
@@ -39,7 +40,8 @@ impl<S: MechanicalSystem> Kkt<S> {
     /// The zero matrix.
     #[inline]
     pub(crate) fn zero() -> Self {
-        Self { rows: Array::from_fn(|_| Array::from_fn(|_| 0.0)) }
+        // A sum that begins at −0 is its first term to the last bit, so that the compiler leaves the addition out.
+        Self { rows: Array::from_fn(|_| Array::from_fn(|_| -0.0)) }
     }
 
     /// Adds `value` to `A[row][col]`.
@@ -64,29 +66,45 @@ impl<S: MechanicalSystem> Kkt<S> {
         }
     }
 
-    /// Scales and factors the matrix by the scene's own elimination.
+    /// Factors the matrix by the scene's own elimination, scaled where that gives up.
     #[inline]
     pub(crate) fn factor(self) -> Result<FactoredKkt<S>, SingularMatrix> {
-        self.factor_with()
+        match S::KktFactors::factor_unscaled(&self.rows) {
+            Some(factors) => Ok(FactoredKkt { factors, scale: None, inertia: self.inertia() }),
+            None => self.factor_scaled(),
+        }
     }
 
-    /// Scales and factors a matrix that may have entries outside of the scene's pattern.
+    /// Factors a matrix that may have entries outside of the scene's pattern.
     pub(crate) fn factor_densely(self) -> Result<FactoredKkt<S, S::DenseKktFactors>, SingularMatrix> {
-        self.factor_with()
+        self.factor_scaled()
     }
 
-    #[inline]
-    fn factor_with<F>(mut self) -> Result<FactoredKkt<S, F>, SingularMatrix>
+    #[cold]
+    fn factor_scaled<F>(mut self) -> Result<FactoredKkt<S, F>, SingularMatrix>
     where
         F: Factorization<S::PerUnknown<f64>, S::PerUnknown<S::PerUnknown<f64>>>,
     {
-        let scale = self.scale();
+        let (inertia, scale) = (self.inertia(), self.scale());
         for row in 0..S::PerUnknown::<f64>::LEN {
             for col in 0..S::PerUnknown::<f64>::LEN {
                 self.rows[row][col] *= scale[row] * scale[col];
             }
         }
-        Ok(FactoredKkt { factors: F::factor(&self.rows)?, scale })
+        Ok(FactoredKkt { factors: F::factor(&self.rows)?, scale: Some(scale), inertia })
+    }
+
+    /// `|Aᵢᵢ|`, or what stands for it in a row where that is zero.
+    #[inline]
+    fn inertia(&self) -> S::PerCoordinate<f64> {
+        Array::from_fn(|i| {
+            let row = self.rows[i].as_ref();
+            if row[i] == 0.0 {
+                largest_magnitude(row[..S::N_COORDINATES].iter().copied())
+            } else {
+                row[i].abs()
+            }
+        })
     }
 
     /// The diagonal `D`: `1/√|Aᵢᵢ|` for a coordinate, `1/‖√A⁻¹ G₀ᵀ eᵢ‖` for a constraint, as powers of two.
@@ -94,11 +112,9 @@ impl<S: MechanicalSystem> Kkt<S> {
     pub(crate) fn scale(&self) -> S::PerUnknown<f64> {
         let n = S::N_COORDINATES;
         let mut scale = S::PerUnknown::<f64>::from_fn(|_| 1.0);
+        let inertia = self.inertia();
         for i in 0..n {
-            let row = self.rows[i].as_ref();
-            let inertia =
-                if row[i] == 0.0 { largest_magnitude(row[..n].iter().copied()) } else { row[i].abs() };
-            scale[i] = reciprocal_power_of_two(Scalar::sqrt(inertia));
+            scale[i] = reciprocal_power_of_two(Scalar::sqrt(inertia[i]));
         }
         for constraint in n..S::PerUnknown::<f64>::LEN {
             let mut squares = 0.0;
@@ -115,7 +131,10 @@ impl<S: MechanicalSystem> Kkt<S> {
 /// A factored saddle-point matrix.
 pub(crate) struct FactoredKkt<S: MechanicalSystem, F = <S as MechanicalSystem>::KktFactors> {
     factors: F,
-    scale: S::PerUnknown<f64>,
+    /// The diagonal `D`, where the factors are those of `D K D`.
+    scale: Option<S::PerUnknown<f64>>,
+    /// `|Aᵢᵢ|`: the metric in which lengths are compared.
+    inertia: S::PerCoordinate<f64>,
 }
 
 impl<S, F> FactoredKkt<S, F>
@@ -126,17 +145,40 @@ where
     /// Overwrites the right-hand side `(a, b)` with the solution `(x, y)`.
     #[inline]
     pub(crate) fn solve(&self, rhs: &mut S::PerUnknown<f64>) {
-        self.apply_scale(rhs);
-        self.factors.solve(rhs);
-        self.apply_scale(rhs);
+        match &self.scale {
+            None => self.factors.solve(rhs),
+            Some(scale) => *rhs = self.solve_scaled(scale, rhs.clone()),
+        }
     }
 
-    /// Length of `x` in units of its natural scale: `max |xᵢ| / Dᵢ`.
+    #[cold]
+    fn solve_scaled(&self, scale: &S::PerUnknown<f64>, mut rhs: S::PerUnknown<f64>) -> S::PerUnknown<f64> {
+        let apply_scale = |unknowns: &mut S::PerUnknown<f64>| {
+            for (unknown, scale) in unknowns.as_mut().iter_mut().zip(scale.as_ref()) {
+                *unknown *= scale;
+            }
+        };
+        apply_scale(&mut rhs);
+        self.factors.solve(&mut rhs);
+        apply_scale(&mut rhs);
+        rhs
+    }
+
+    /// `Σ |Aᵢᵢ| xᵢ²`: the squared length of a configuration, whatever the units of its coordinates.
     #[inline]
-    pub(crate) fn scaled_length<'x>(&self, x: impl IntoIterator<Item = &'x f64>) -> f64 {
-        largest_magnitude(
-            x.into_iter().take(S::N_COORDINATES).zip(self.scale.as_ref()).map(|(x, scale)| x / scale),
-        )
+    pub(crate) fn squared_length(&self, x: impl Fn(usize) -> f64) -> f64 {
+        let mut sum = -0.0;
+        for i in 0..S::N_COORDINATES {
+            sum += self.inertia[i] * (x(i) * x(i));
+        }
+        sum
+    }
+
+    /// The length of `x` relative to that of `reference`; 0 for a vanishing `x`, whatever the reference.
+    #[inline]
+    pub(crate) fn relative_length(&self, x: impl Fn(usize) -> f64, reference: impl Fn(usize) -> f64) -> f64 {
+        let length = self.squared_length(x);
+        if length == 0.0 { 0.0 } else { Scalar::sqrt(length / self.squared_length(reference)) }
     }
 
     /// Smallest pivot over largest.
@@ -145,11 +187,10 @@ where
         self.factors.pivot_ratio()
     }
 
-    #[inline]
-    fn apply_scale(&self, unknowns: &mut S::PerUnknown<f64>) {
-        for (unknown, scale) in unknowns.as_mut().iter_mut().zip(self.scale.as_ref()) {
-            *unknown *= scale;
-        }
+    /// Whether the pivoted dense solve has taken the place of the scene's own elimination.
+    #[inline(always)]
+    pub(crate) fn is_fallback(&self) -> bool {
+        self.factors.is_fallback()
     }
 }
 
@@ -284,7 +325,7 @@ mod tests {
     #[test]
     fn a_length_is_measured_in_the_unit_of_each_coordinate() {
         let factors = kkt(&Chain { m1: 4.0, m2: 1.0, unit: 1.0 }).factor().unwrap();
-        assert_eq!(factors.scaled_length(&[3.0, 0.0, -5.0, 0.0]), 6.0);
+        assert_eq!(factors.squared_length(|i| [3.0, 0.0, -5.0, 0.0][i]), 61.0);
     }
 
     #[test]
@@ -293,7 +334,7 @@ mod tests {
         for i in 0..4 {
             let mut x = [1.0; 4];
             x[i] = f64::NAN;
-            assert!(factors.scaled_length(&x).is_nan(), "entry {i}");
+            assert!(factors.squared_length(|i| x[i]).is_nan(), "entry {i}");
         }
     }
 }

@@ -29,11 +29,23 @@ pub trait Factorization<V, M>: Sized {
     /// [`SingularMatrix`] when the smallest pivot is lost in the round-off of the largest.
     fn factor(matrix: &M) -> Result<Self, SingularMatrix>;
 
+    /// Factors a matrix whose rows and columns have different units, if that needs no comparison of pivots with each other.
+    #[inline]
+    fn factor_unscaled(_matrix: &M) -> Option<Self> {
+        None
+    }
+
     /// Overwrites the right-hand side `b` with the solution of `A x = b`.
     fn solve(&self, rhs: &mut V);
 
     /// Smallest pivot over largest, in `[0, 1]`: small values announce a singular matrix.
     fn pivot_ratio(&self) -> f64;
+
+    /// Whether the pivoted dense solve has taken the place of the scene's own elimination.
+    #[inline(always)]
+    fn is_fallback(&self) -> bool {
+        false
+    }
 }
 
 /// A matrix is singular to working precision.

@@ -1,14 +1,19 @@
 //! Products with the constraint Jacobian, entry by entry of its pattern.
 
-use super::Mechanics;
+use super::{CoordinateMatrix, Mechanics};
 use crate::array::Array;
-use crate::linear::{Factorization, SingularMatrix};
 use crate::scalar::Scalar;
 use crate::system::MechanicalSystem;
 
 /// `B Gᵀ` for a symmetric matrix `B` over the coordinates, a row per constraint.
 pub(crate) type Directions<S> =
     <S as MechanicalSystem>::PerConstraint<<S as MechanicalSystem>::PerCoordinate<f64>>;
+
+/// A matrix over the constraints, by rows.
+type Gram<S> = <S as MechanicalSystem>::PerConstraint<<S as MechanicalSystem>::PerConstraint<f64>>;
+
+/// Where a sum begins: `−0 + x` is `x` to the last bit, so that the compiler leaves the addition out.
+pub(crate) const NOTHING: f64 = -0.0;
 
 impl<S: MechanicalSystem> Mechanics<S> {
     /// Adds `Gᵀ x` to `sum`.
@@ -28,27 +33,35 @@ impl<S: MechanicalSystem> Mechanics<S> {
     }
 
     /// `B Gᵀ` for a symmetric matrix `B`, a row per constraint.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn constraint_directions(
         &self,
         jacobian: &S::PerJacobianEntry<f64>,
-        matrix: impl Fn(&S::PerCoordinate<f64>) -> S::PerCoordinate<f64>,
+        matrix: &CoordinateMatrix<S>,
     ) -> Directions<S> {
-        let mut gradients: Directions<S> = Array::from_fn(|_| Array::from_fn(|_| 0.0));
+        let mut directions: Directions<S> = Array::from_fn(|_| Array::from_fn(|_| 0.0));
         for entry in S::STRUCTURE.jacobian.q {
-            gradients[entry.row][entry.col] = entry.value(self.constants.as_ref(), jacobian.as_ref());
+            let slope = entry.value(self.constants.as_ref(), jacobian.as_ref());
+            let direction = &mut directions[entry.row];
+            if S::STRUCTURE.is_uncoupled() {
+                direction[entry.col] = matrix.at(entry.col, entry.col) * slope;
+            } else {
+                for i in 0..S::N_COORDINATES {
+                    direction[i] += matrix.at(i, entry.col) * slope;
+                }
+            }
         }
-        Array::from_fn(|c| matrix(&gradients[c]))
+        directions
     }
 
-    /// Factors `G D`, where the rows of `directions` are the columns of `D`.
-    #[inline]
-    pub(crate) fn factor_gram(
+    /// `G D`, where the rows of `directions` are the columns of `D`.
+    #[inline(always)]
+    pub(crate) fn gram_matrix(
         &self,
         jacobian: &S::PerJacobianEntry<f64>,
         directions: &Directions<S>,
-    ) -> Result<S::GramFactors, SingularMatrix> {
-        let mut gram: S::PerConstraint<S::PerConstraint<f64>> = Array::from_fn(|_| Array::from_fn(|_| 0.0));
+    ) -> Gram<S> {
+        let mut gram: Gram<S> = Array::from_fn(|_| Array::from_fn(|_| NOTHING));
         for entry in S::STRUCTURE.jacobian.q {
             let slope = entry.value(self.constants.as_ref(), jacobian.as_ref());
             if S::STRUCTURE.is_uncoupled() {
@@ -63,32 +76,42 @@ impl<S: MechanicalSystem> Mechanics<S> {
                 }
             }
         }
-        S::GramFactors::factor(&gram)
+        gram
     }
 
-    /// `1 / Σᵢ |G_ci| rᵢ` for a reach `rᵢ ≥ 0` of every coordinate; 0 for a constraint within reach of none.
+    /// `Σᵢ |G_ci| rᵢ` for a reach `rᵢ ≥ 0` of every coordinate.
     #[inline]
-    pub(crate) fn inverse_constraint_scale(
+    pub(crate) fn constraint_scale(
         &self,
         jacobian: &S::PerJacobianEntry<f64>,
         reach: &S::PerCoordinate<f64>,
     ) -> S::PerConstraint<f64> {
-        let mut scale = S::PerConstraint::<f64>::from_fn(|_| 0.0);
+        let mut scale = S::PerConstraint::<f64>::from_fn(|_| NOTHING);
         for entry in S::STRUCTURE.jacobian.q {
             let slope = entry.value(self.constants.as_ref(), jacobian.as_ref());
             scale[entry.row] += slope.abs() * reach[entry.col];
         }
-        Array::from_fn(|c| if scale[c] > 0.0 { 1.0 / scale[c] } else { 0.0 })
+        scale
     }
 
     /// `‖G_c‖`, the Euclidean norm of every constraint's gradient.
     pub(crate) fn gradient_norms(&self, jacobian: &S::PerJacobianEntry<f64>) -> S::PerConstraint<f64> {
-        let mut squares = S::PerConstraint::<f64>::from_fn(|_| 0.0);
+        let mut squares = S::PerConstraint::<f64>::from_fn(|_| NOTHING);
         for entry in S::STRUCTURE.jacobian.q {
             let slope = entry.value(self.constants.as_ref(), jacobian.as_ref());
             squares[entry.row] += slope * slope;
         }
         Array::from_fn(|c| Scalar::sqrt(squares[c]))
+    }
+
+    /// `∂φ/∂t`.
+    #[inline(always)]
+    pub(crate) fn constraint_time_rate(&self, jacobian: &[f64]) -> S::PerConstraint<f64> {
+        let mut rate = S::PerConstraint::<f64>::from_fn(|_| NOTHING);
+        for entry in S::STRUCTURE.jacobian.t {
+            rate[entry.row] += entry.value(self.constants.as_ref(), jacobian);
+        }
+        rate
     }
 
     /// `G v + ∂φ/∂t`: the rate at which a motion leaves the constraints.
@@ -98,10 +121,7 @@ impl<S: MechanicalSystem> Mechanics<S> {
         jacobian: &[f64],
         v: &S::PerCoordinate<f64>,
     ) -> S::PerConstraint<f64> {
-        let mut rate = S::PerConstraint::<f64>::from_fn(|_| 0.0);
-        for entry in S::STRUCTURE.jacobian.t {
-            rate[entry.row] += entry.value(self.constants.as_ref(), jacobian);
-        }
+        let mut rate = self.constraint_time_rate(jacobian);
         for entry in S::STRUCTURE.jacobian.q {
             rate[entry.row] += entry.value(self.constants.as_ref(), jacobian) * v[entry.col];
         }

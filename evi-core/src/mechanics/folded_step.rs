@@ -12,14 +12,11 @@
 //! the number of nodes, and positions are eliminated for good. Each of the three maps is symplectic whatever the rounding
 //! of its matrix, so that rounded coefficients cause no drift.
 
-use super::{DiscreteLagrangian, Slot};
+use super::{ConstantLegendre, CoordinateMatrix, DiscreteLagrangian, Rows, Slot};
 use crate::array::Array;
-use crate::linear::{Factorization, SingularMatrix};
+use crate::linear::SingularMatrix;
 use crate::scheme::InterpolationTable;
 use crate::system::{LagrangianGradient, MechanicalSystem};
-
-/// A matrix over the coordinates, by rows.
-type Matrix<S> = <S as MechanicalSystem>::PerCoordinate<<S as MechanicalSystem>::PerCoordinate<f64>>;
 
 /// A step without its constraint forces.
 pub(crate) struct FoldedStep<S: MechanicalSystem> {
@@ -28,16 +25,13 @@ pub(crate) struct FoldedStep<S: MechanicalSystem> {
     /// `q₁ ↦ (E q₁ + c)/h`.
     end_kick: Kick<S>,
     /// `h A⁻¹`.
-    drift: Matrix<S>,
-    /// `M⁻¹`.
-    inverse_mass: Matrix<S>,
-    /// `∂L/∂v` at `v = 0`.
-    momentum_at_rest: S::PerCoordinate<f64>,
+    pub(crate) drift: CoordinateMatrix<S>,
+    pub(crate) legendre: ConstantLegendre<S>,
 }
 
 /// An affine force times a time.
 struct Kick<S: MechanicalSystem> {
-    linear: Matrix<S>,
+    linear: CoordinateMatrix<S>,
     constant: S::PerCoordinate<f64>,
 }
 
@@ -57,12 +51,13 @@ impl<S: MechanicalSystem> FoldedStep<S> {
         let h = action.h();
         let constants = &action.mechanics.constants;
         let origin = S::PerCoordinate::<f64>::from_fn(|_| 0.0);
-        let mut step_matrix = zero_matrix::<S>();
-        let (mut start_kick, mut end_kick) = (Kick::<S>::zero(), Kick::<S>::zero());
+        let zero = CoordinateMatrix::<S>::zero_rows;
+        let (mut step_matrix, mut start_matrix, mut end_matrix) = (zero(), zero(), zero());
+        let (mut start_constant, mut end_constant) = (origin.clone(), origin.clone());
         action.for_each_node(0.0, &origin, &origin, |node, weight, t, x, v| {
             let (LagrangianGradient { force, momentum }, hessian) =
                 S::lagrangian_derivatives(constants, t, x, v);
-            let add = |matrix: &mut Matrix<S>, factor: f64, first, second| {
+            let add = |matrix: &mut Rows<S>, factor: f64, first, second| {
                 action.for_each_second_derivative(
                     node,
                     weight,
@@ -73,29 +68,19 @@ impl<S: MechanicalSystem> FoldedStep<S> {
                 );
             };
             add(&mut step_matrix, -1.0, Slot::START, Slot::END);
-            add(&mut start_kick.linear, 1.0 / h, Slot::START, Slot::BOTH);
-            add(&mut end_kick.linear, 1.0 / h, Slot::BOTH, Slot::END);
+            add(&mut start_matrix, 1.0 / h, Slot::START, Slot::BOTH);
+            add(&mut end_matrix, 1.0 / h, Slot::BOTH, Slot::END);
             for i in 0..S::N_COORDINATES {
                 let c = action.coefficients(node, i);
-                start_kick.constant[i] += weight * (h * c.start() * force[i] + c.start_rate() * momentum[i]);
-                end_kick.constant[i] += weight * (h * c.end() * force[i] + c.end_rate() * momentum[i]);
+                start_constant[i] += weight * (h * c.start() * force[i] + c.start_rate() * momentum[i]);
+                end_constant[i] += weight * (h * c.end() * force[i] + c.end_rate() * momentum[i]);
             }
         });
-        let (LagrangianGradient { momentum, .. }, hessian) =
-            S::lagrangian_derivatives(constants, 0.0, &origin, &origin);
-        let mut mass = zero_matrix::<S>();
-        for entry in S::STRUCTURE.hessian.vv {
-            let value = entry.value(constants.as_ref(), hessian.as_ref());
-            mass[entry.row][entry.col] = value;
-            mass[entry.col][entry.row] = value;
-        }
-        let response = inverse::<S>(&step_matrix)?;
         Ok(Self {
-            start_kick,
-            end_kick,
-            drift: Array::from_fn(|row| Array::from_fn(|col| h * response[row][col])),
-            inverse_mass: inverse::<S>(&mass)?,
-            momentum_at_rest: momentum,
+            start_kick: Kick { linear: CoordinateMatrix::new(start_matrix), constant: start_constant },
+            end_kick: Kick { linear: CoordinateMatrix::new(end_matrix), constant: end_constant },
+            drift: CoordinateMatrix::inverse_of(&step_matrix)?.scaled(h),
+            legendre: ConstantLegendre::new(&action.mechanics)?,
         })
     }
 
@@ -120,34 +105,9 @@ impl<S: MechanicalSystem> FoldedStep<S> {
     ) -> S::PerCoordinate<f64> {
         self.end_kick.apply(is_straight, q, p)
     }
-
-    /// `h A⁻¹ p`: the difference of positions that the momentum `p½` makes.
-    #[inline]
-    pub(crate) fn drift(&self, p: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
-        times::<S>(&self.drift, |i| p[i])
-    }
-
-    /// `M⁻¹ p`.
-    #[inline]
-    pub(crate) fn inverse_mass(&self, p: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
-        times::<S>(&self.inverse_mass, |i| p[i])
-    }
-
-    /// The velocity of the momentum `p`.
-    #[inline]
-    pub(crate) fn velocity(&self, p: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
-        if S::STRUCTURE.momentum_vanishes_at_rest {
-            return self.inverse_mass(p);
-        }
-        times::<S>(&self.inverse_mass, |i| p[i] - self.momentum_at_rest[i])
-    }
 }
 
 impl<S: MechanicalSystem> Kick<S> {
-    fn zero() -> Self {
-        Self { linear: zero_matrix::<S>(), constant: Array::from_fn(|_| 0.0) }
-    }
-
     /// `p` after the kick at `q`, which does not depend on `q` where curves are straight and `L` is at most linear in `q`.
     #[inline]
     fn apply(
@@ -159,34 +119,7 @@ impl<S: MechanicalSystem> Kick<S> {
         if is_straight && S::STRUCTURE.hessian.qq.is_empty() {
             return Array::from_fn(|i| p[i] + self.constant[i]);
         }
-        let linear = times::<S>(&self.linear, |i| q[i]);
+        let linear = self.linear.times(|i| q[i]);
         Array::from_fn(|i| p[i] + (linear[i] + self.constant[i]))
     }
-}
-
-fn zero_matrix<S: MechanicalSystem>() -> Matrix<S> {
-    Array::from_fn(|_| Array::from_fn(|_| 0.0))
-}
-
-/// `matrix · x`, elementwise where the scene couples no coordinates.
-#[inline]
-fn times<S: MechanicalSystem>(matrix: &Matrix<S>, x: impl Fn(usize) -> f64) -> S::PerCoordinate<f64> {
-    Array::from_fn(|i| {
-        if S::STRUCTURE.is_uncoupled() {
-            matrix[i][i] * x(i)
-        } else {
-            (0..S::N_COORDINATES).map(|k| matrix[i][k] * x(k)).sum()
-        }
-    })
-}
-
-fn inverse<S: MechanicalSystem>(matrix: &Matrix<S>) -> Result<Matrix<S>, SingularMatrix> {
-    let factors = S::MassFactors::factor(matrix)?;
-    // Column by column, kept as rows: the matrix is symmetric, and made so to the last bit.
-    let columns: Matrix<S> = Array::from_fn(|col| {
-        let mut column = S::PerCoordinate::<f64>::from_fn(|row| if row == col { 1.0 } else { 0.0 });
-        factors.solve(&mut column);
-        column
-    });
-    Ok(Array::from_fn(|row| Array::from_fn(|col| 0.5 * (columns[col][row] + columns[row][col]))))
 }

@@ -5,24 +5,29 @@
 //! but for its constraints (`FoldedStep`).
 
 mod constraints;
+mod coordinate_matrix;
 mod folded_step;
 #[cfg(feature = "std")]
 mod galerkin_equations;
+mod legendre;
 mod momentum;
 mod observables;
 mod state;
 mod step_equations;
 
-pub(crate) use constraints::Directions;
+pub(crate) use constraints::{Directions, NOTHING};
+pub(crate) use coordinate_matrix::{CoordinateMatrix, Rows};
 pub(crate) use folded_step::FoldedStep;
 #[cfg(feature = "std")]
 pub(crate) use galerkin_equations::{GalerkinAction, Points};
+pub(crate) use legendre::ConstantLegendre;
 pub use momentum::{Acceleration, ProjectionError};
 pub(crate) use momentum::{Projected, relative};
 pub(crate) use observables::norm;
 pub use state::State;
 pub(crate) use step_equations::{DiscreteLagrangian, Slot, StepStart};
 
+use crate::array::Array;
 use crate::linear::Kkt;
 use crate::system::MechanicalSystem;
 
@@ -54,6 +59,19 @@ impl<S: MechanicalSystem> Mechanics<S> {
         let (_, hessian) = S::lagrangian_derivatives(&self.constants, t, q, v);
         let (_, jacobian) = S::constraint_derivatives(&self.constants, t, q);
         self.mass_kkt(hessian.as_ref(), jacobian.as_ref()).scale()
+    }
+
+    /// The mass matrix of a scene in which it is constant.
+    pub(crate) fn constant_mass(&self) -> Rows<S> {
+        let at_rest = Array::from_fn(|_| 0.0);
+        let (_, hessian) = S::lagrangian_derivatives(&self.constants, 0.0, &at_rest, &at_rest);
+        let mut mass = CoordinateMatrix::<S>::zero_rows();
+        for entry in S::STRUCTURE.hessian.vv {
+            let value = entry.value(self.constants.as_ref(), hessian.as_ref());
+            mass[entry.row][entry.col] = value;
+            mass[entry.col][entry.row] = value;
+        }
+        mass
     }
 
     /// The saddle-point matrix of mass matrix and constraints, `[M Gᵀ; G 0]`.

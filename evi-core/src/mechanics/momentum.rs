@@ -3,7 +3,7 @@
 use super::Mechanics;
 use crate::array::Array;
 use crate::linear::{FactoredKkt, SingularMatrix, constraint_index, unknowns};
-use crate::newton::{self, NotConverged};
+use crate::newton::{self, NotConverged, Tally};
 use crate::system::{LagrangianGradient, MechanicalSystem};
 
 /// A momentum with the constraint impulse removed, and the velocity that belongs to it.
@@ -49,12 +49,16 @@ impl<S: MechanicalSystem> Mechanics<S> {
         q: &S::PerCoordinate<f64>,
         momentum: &S::PerCoordinate<f64>,
         mut v: S::PerCoordinate<f64>,
+        tally: &mut impl Tally,
     ) -> Result<Projected<S>, ProjectionError> {
         let (_, jacobian) = S::constraint_derivatives(&self.constants, t, q);
         let mut impulse = S::PerConstraint::<f64>::from_fn(|_| 0.0);
         let mut correct = || -> Result<f64, ProjectionError> {
             let (gradient, hessian) = S::lagrangian_derivatives(&self.constants, t, q, &v);
             let kkt = self.mass_kkt(hessian.as_ref(), jacobian.as_ref()).factor()?;
+            if kkt.is_fallback() {
+                tally.count_fallback();
+            }
             let rate = self.constraint_rate(jacobian.as_ref(), &v);
             let mut correction = unknowns::<S>(|i| momentum[i] - gradient.momentum[i], |c| -rate[c]);
             kkt.solve(&mut correction);
@@ -66,7 +70,7 @@ impl<S: MechanicalSystem> Mechanics<S> {
             if S::N_CONSTRAINTS > 0 {
                 self.refine_hidden_constraints(&kkt, &jacobian, &mut v, &mut impulse);
             }
-            Ok(relative(kkt.scaled_length(correction.as_ref()), kkt.scaled_length(v.as_ref())))
+            Ok(kkt.relative_length(|i| correction[i], |i| v[i]))
         };
         if S::STRUCTURE.is_quadratic_in_velocity() {
             correct()?;
@@ -135,7 +139,7 @@ impl<S: MechanicalSystem> Mechanics<S> {
             for c in 0..S::N_CONSTRAINTS {
                 multipliers[c] += correction[constraint_index::<S>(c)];
             }
-            Ok(relative(kkt.scaled_length(correction.as_ref()), kkt.scaled_length(q.as_ref())))
+            Ok(kkt.relative_length(|i| correction[i], |i| q[i]))
         })?;
         Ok(q)
     }
@@ -192,7 +196,7 @@ impl<S: MechanicalSystem> Mechanics<S> {
         v: S::PerCoordinate<f64>,
     ) -> Result<Projected<S>, ProjectionError> {
         let momentum = S::lagrangian_gradient(&self.constants, t, q, &v).momentum;
-        self.project_momentum(t, q, &momentum, v)
+        self.project_momentum(t, q, &momentum, v, &mut ())
     }
 
     /// Accelerations and multipliers of the continuous motion at `(t, q, v)`: the index-1 equations
@@ -213,6 +217,18 @@ impl<S: MechanicalSystem> Mechanics<S> {
         q: &S::PerCoordinate<f64>,
         v: &S::PerCoordinate<f64>,
     ) -> Result<Acceleration<S>, SingularMatrix> {
+        self.acceleration_tallied(t, q, v, &mut ())
+    }
+
+    /// [`acceleration`](Self::acceleration) under a step.
+    #[inline]
+    pub(crate) fn acceleration_tallied(
+        &self,
+        t: f64,
+        q: &S::PerCoordinate<f64>,
+        v: &S::PerCoordinate<f64>,
+        tally: &mut impl Tally,
+    ) -> Result<Acceleration<S>, SingularMatrix> {
         let (LagrangianGradient { mut force, .. }, hessian) =
             S::lagrangian_derivatives(&self.constants, t, q, v);
         for entry in S::STRUCTURE.hessian.vq {
@@ -224,6 +240,9 @@ impl<S: MechanicalSystem> Mechanics<S> {
         let (_, jacobian) = S::constraint_derivatives(&self.constants, t, q);
         let curvature = S::constraint_curvature(&self.constants, t, q, v);
         let kkt = self.mass_kkt(hessian.as_ref(), jacobian.as_ref()).factor()?;
+        if kkt.is_fallback() {
+            tally.count_fallback();
+        }
         let mut solution = unknowns::<S>(|i| force[i], |c| -curvature[c]);
         kkt.solve(&mut solution);
         Ok(Acceleration {

@@ -15,7 +15,7 @@
 //! (Marsden & West, Acta Numerica 10 (2001), sec. 3.5; the first row times `h`, so that every entry of the matrix
 //! stays of order one as `h → 0`). `p⁻ = D₂L_d(q₀, q₁)` is the momentum that arrives at the end of the step.
 
-use super::Mechanics;
+use super::{Mechanics, NOTHING};
 use crate::array::Array;
 use crate::linear::{Kkt, unknowns};
 use crate::scheme::{InterpolationTable, NodeCoefficients, Quadrature, interpolate};
@@ -27,6 +27,10 @@ pub(crate) struct DiscreteLagrangian<S: MechanicalSystem, T, const K: usize> {
     table: T,
     quadrature: Quadrature<K>,
     h: f64,
+    /// `1/h`.
+    inverse_h: f64,
+    /// `wⱼ h²`.
+    squared_weights: [f64; K],
 }
 
 /// Where a step starts, with what stays fixed during its Newton iteration.
@@ -57,7 +61,8 @@ impl Slot {
 
 impl<S: MechanicalSystem, T: InterpolationTable, const K: usize> DiscreteLagrangian<S, T, K> {
     pub(crate) fn new(mechanics: Mechanics<S>, table: T, quadrature: Quadrature<K>, h: f64) -> Self {
-        Self { mechanics, table, quadrature, h }
+        let squared_weights = quadrature.weights().map(|weight| weight * h * h);
+        Self { mechanics, table, quadrature, h, inverse_h: 1.0 / h, squared_weights }
     }
 
     /// Step size.
@@ -84,7 +89,7 @@ impl<S: MechanicalSystem, T: InterpolationTable, const K: usize> DiscreteLagrang
         let constants = &self.mechanics.constants;
         let h = self.h;
         let mut kkt = Kkt::zero();
-        let mut start_momentum = S::PerCoordinate::<f64>::from_fn(|_| 0.0);
+        let mut start_momentum = S::PerCoordinate::<f64>::from_fn(|_| NOTHING);
         self.for_each_node(start.t, start.q, difference, |node, weight, t, x, v| {
             let (gradient, hessian) = S::lagrangian_derivatives(constants, t, x, v);
             self.subtract_d1(node, weight, &gradient, &mut start_momentum);
@@ -107,7 +112,7 @@ impl<S: MechanicalSystem, T: InterpolationTable, const K: usize> DiscreteLagrang
         q: &S::PerCoordinate<f64>,
         difference: &S::PerCoordinate<f64>,
     ) -> S::PerCoordinate<f64> {
-        let mut end_momentum = S::PerCoordinate::<f64>::from_fn(|_| 0.0);
+        let mut end_momentum = S::PerCoordinate::<f64>::from_fn(|_| NOTHING);
         self.for_each_node(t, q, difference, |node, weight, t, x, v| {
             let gradient = S::lagrangian_gradient(&self.mechanics.constants, t, x, v);
             for i in 0..S::N_COORDINATES {
@@ -129,9 +134,8 @@ impl<S: MechanicalSystem, T: InterpolationTable, const K: usize> DiscreteLagrang
         mut visit: impl FnMut(usize, f64, f64, &S::PerCoordinate<f64>, &S::PerCoordinate<f64>),
     ) {
         let half_sum = S::PerCoordinate::<f64>::from_fn(|i| q[i] + 0.5 * difference[i]);
-        let inverse_h = 1.0 / self.h;
         for node in 0..K {
-            let (x, v) = interpolate::<S>(&self.table, node, &half_sum, difference, inverse_h);
+            let (x, v) = interpolate::<S>(&self.table, node, &half_sum, difference, self.inverse_h);
             let node_time = t + (0.5 + self.quadrature.offsets()[node]) * self.h;
             visit(node, self.quadrature.weights()[node], node_time, &x, &v);
         }
@@ -179,7 +183,7 @@ impl<S: MechanicalSystem, T: InterpolationTable, const K: usize> DiscreteLagrang
         let pattern = S::STRUCTURE.hessian;
         let h = self.h;
         for entry in pattern.qq {
-            let value = weight * h * h * entry.value(constants, hessian);
+            let value = self.squared_weights[node] * entry.value(constants, hessian);
             let (row, col) = self.coefficients_of(node, entry.row, entry.col);
             add(entry.row, entry.col, (first.position)(&row) * value * (second.position)(&col));
             if entry.row != entry.col {

@@ -1,11 +1,12 @@
 //! The user's expressions once more, in the user's order and with the user's spans, generic over the scalar.
 //!
-//! Only numbers, constants, `der(..)` and the spelling of names are rewritten. Nothing of the graph is used: this copy is
+//! Only numbers, constants, `der(..)` and the spelling of names are rewritten; long sums are in pieces. Nothing of the graph is used: this copy is
 //! the oracle that the kernels are tested against.
 
 use proc_macro2::{Group, Ident, Literal, Span, TokenStream, TokenTree};
 use quote::{ToTokens, format_ident, quote, quote_spanned};
 
+use super::pieces::in_pieces;
 use crate::model::{LagrangianSource, Model};
 use crate::syntax::{Declaration, Expression};
 
@@ -111,7 +112,7 @@ impl Rewriter {
 
     fn tokens(&self, tokens: TokenStream) -> TokenStream {
         let tokens: Vec<TokenTree> = tokens.into_iter().collect();
-        let mut rewritten = TokenStream::new();
+        let mut rewritten: Vec<TokenTree> = Vec::new();
         let mut rest = tokens.as_slice();
         while let Some(token) = rest.first() {
             let path_length = path_length(rest);
@@ -160,7 +161,7 @@ impl Rewriter {
             };
             rest = &rest[consumed..];
         }
-        rewritten
+        in_pieces(&rewritten)
     }
 }
 

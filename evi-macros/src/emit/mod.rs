@@ -7,6 +7,7 @@ mod fallback;
 mod generic;
 mod implementation;
 mod kernel;
+mod pieces;
 mod report;
 mod storage;
 

@@ -4,6 +4,7 @@ use proc_macro2::{Ident, Span, TokenStream};
 use quote::ToTokens;
 
 use super::item::{Item, parse_items};
+use super::nesting;
 use crate::diagnostics::Diagnostics;
 
 /// A struct with its attribute.
@@ -36,6 +37,7 @@ pub(crate) struct NotAnItem;
 
 /// Parses a struct and its `#[evi(...)]` attributes.
 pub(crate) fn parse(input: TokenStream, diagnostics: &mut Diagnostics) -> Result<Declaration, NotAnItem> {
+    let input = nesting::bounded(input, diagnostics);
     let input: syn::DeriveInput = syn::parse2(input).map_err(|error| {
         diagnostics.report(error.span(), error.to_string());
         NotAnItem

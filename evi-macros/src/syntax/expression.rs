@@ -1,18 +1,21 @@
 //! The expression language: from a Rust expression to a node of the graph.
 
+use std::rc::Rc;
+
 use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
 use quote::ToTokens;
 use syn::parse::{ParseStream, Parser};
 use syn::spanned::Spanned;
 
 use super::integers::{integer_division_message, integer_literal, is_integer, power_message};
+use super::spine::{Tree, first_span, last_span, left_operand};
 use crate::diagnostics::{Diagnostics, suggestion};
 use crate::expr::{Binary, ExprId, Graph, Unary};
 
 /// An expression as the user wrote it.
 #[derive(Clone)]
 pub(crate) struct Expression {
-    syntax: syn::Expr,
+    syntax: Rc<Tree>,
     /// Its tokens, for the copy that rustc evaluates.
     pub(crate) tokens: TokenStream,
 }
@@ -70,7 +73,7 @@ impl Expression {
             }
         };
         match whole.parse2(TokenTree::Group(group).into()) {
-            Ok(syntax) => Some(Self { syntax, tokens }),
+            Ok(syntax) => Some(Self { syntax: Rc::new(Tree::new(syntax)), tokens }),
             Err(error) => {
                 diagnostics.report(error.span(), error.to_string());
                 None
@@ -86,7 +89,7 @@ pub(crate) fn lower(
     resolver: &mut impl Resolver,
     diagnostics: &mut Diagnostics,
 ) -> Option<ExprId> {
-    Lowering { graph, resolver, diagnostics }.value(&expression.syntax)
+    Lowering { graph, resolver, diagnostics }.value(expression.syntax.root())
 }
 
 struct Lowering<'a, R> {
@@ -96,28 +99,30 @@ struct Lowering<'a, R> {
 }
 
 impl<R: Resolver> Lowering<'_, R> {
+    /// Recurses into what parentheses hold, whose depth is bounded; not along sums, products and chains of methods.
     fn value(&mut self, expression: &syn::Expr) -> Option<ExprId> {
+        let mut spine = vec![expression];
+        while let Some(left) = left_operand(spine[spine.len() - 1]) {
+            spine.push(left);
+        }
+        let innermost = spine.pop().expect("the expression itself, if nothing else");
+        let value = self.innermost(innermost);
+        spine.into_iter().rev().fold(value, |value, outer| self.applied(outer, value))
+    }
+
+    /// The node of an expression without an operand on its left.
+    fn innermost(&mut self, expression: &syn::Expr) -> Option<ExprId> {
         match expression {
             syn::Expr::Lit(literal) => self.literal(&literal.lit),
             syn::Expr::Path(path) if path.qself.is_none() => self.path(path),
-            syn::Expr::Paren(inner) => self.value(&inner.expr),
-            syn::Expr::Group(inner) => self.value(&inner.expr),
-            syn::Expr::Unary(unary) => self.unary(unary),
-            syn::Expr::Binary(binary) => self.binary(binary),
-            syn::Expr::MethodCall(call) => self.method(call),
             syn::Expr::Call(call) => self.call(call),
             syn::Expr::Block(block) if block.label.is_none() => self.block(&block.block),
-            syn::Expr::Field(field) => self.field(field),
+            syn::Expr::Field(field) => {
+                let member = field.member.to_token_stream();
+                self.mistake_over(field, format!("a field is named directly, write `{member}`"))
+            }
             syn::Expr::Array(array) => {
                 self.mistake_over(array, "a vector where a number is expected: coordinates are scalars")
-            }
-            syn::Expr::Index(index) => {
-                self.value(&index.expr)?;
-                self.mistake_over(index, "nothing here has an index: coordinates are scalars")
-            }
-            syn::Expr::Cast(cast) => {
-                self.value(&cast.expr);
-                self.mistake(cast.as_token.span, "no cast is needed: every value is a real number")
             }
             syn::Expr::If(choice) => self.mistake(
                 choice.if_token.span,
@@ -134,8 +139,36 @@ impl<R: Resolver> Lowering<'_, R> {
         }
     }
 
+    /// The node of an expression whose left operand has this value.
+    fn applied(&mut self, expression: &syn::Expr, left: Option<ExprId>) -> Option<ExprId> {
+        match expression {
+            syn::Expr::Binary(binary) => self.binary(binary, left),
+            syn::Expr::MethodCall(call) => self.method(call, left),
+            syn::Expr::Unary(unary) => self.unary(unary, left),
+            syn::Expr::Field(field) => self.field(field),
+            syn::Expr::Index(index) => {
+                left?;
+                self.mistake_between(
+                    first_span(&index.expr),
+                    index.bracket_token.span.close(),
+                    "nothing here has an index: coordinates are scalars",
+                )
+            }
+            syn::Expr::Cast(cast) => {
+                self.mistake(cast.as_token.span, "no cast is needed: every value is a real number")
+            }
+            // Parentheses.
+            _ => left,
+        }
+    }
+
     fn mistake(&mut self, span: Span, message: impl Into<String>) -> Option<ExprId> {
         self.diagnostics.report(span, message);
+        None
+    }
+
+    fn mistake_between(&mut self, first: Span, last: Span, message: impl Into<String>) -> Option<ExprId> {
+        self.diagnostics.report_range(first, last, message);
         None
     }
 
@@ -143,16 +176,11 @@ impl<R: Resolver> Lowering<'_, R> {
     fn mistake_over(&mut self, syntax: &impl ToTokens, message: impl Into<String>) -> Option<ExprId> {
         let tokens: Vec<TokenTree> = syntax.to_token_stream().into_iter().collect();
         let (first, last) = (tokens.first().expect("syntax has tokens"), tokens.last().expect("as above"));
-        self.diagnostics.report_range(first.span(), last.span(), message);
-        None
+        self.mistake_between(first.span(), last.span(), message)
     }
 
     fn field(&mut self, field: &syn::ExprField) -> Option<ExprId> {
         let member = field.member.to_token_stream().to_string();
-        if matches!(&*field.base, syn::Expr::Path(base) if base.path.is_ident("self")) {
-            return self.mistake_over(field, format!("a field is named directly, write `{member}`"));
-        }
-        self.value(&field.base);
         if is_function(&member) {
             return self
                 .mistake(field.member.span(), format!("`.{member}` is a function, write `.{member}(..)`"));
@@ -194,37 +222,33 @@ impl<R: Resolver> Lowering<'_, R> {
         }
     }
 
-    fn unary(&mut self, unary: &syn::ExprUnary) -> Option<ExprId> {
+    fn unary(&mut self, unary: &syn::ExprUnary, operand: Option<ExprId>) -> Option<ExprId> {
         match unary.op {
-            syn::UnOp::Neg(_) => self.value(&unary.expr).map(|operand| self.graph.neg(operand)),
-            _ => {
-                self.value(&unary.expr);
-                self.mistake_over(&unary.op, "this operator has no meaning for real numbers")
-            }
+            syn::UnOp::Neg(_) => operand.map(|operand| self.graph.neg(operand)),
+            _ => self.mistake_over(&unary.op, "this operator has no meaning for real numbers"),
         }
     }
 
-    fn binary(&mut self, binary: &syn::ExprBinary) -> Option<ExprId> {
+    fn binary(&mut self, binary: &syn::ExprBinary, first: Option<ExprId>) -> Option<ExprId> {
         // `x ** 2` parses as `x * (*2)`.
         if let (
             syn::BinOp::Mul(first),
             syn::Expr::Unary(syn::ExprUnary { op: syn::UnOp::Deref(second), expr, .. }),
         ) = (binary.op, &*binary.right)
         {
-            self.value(&binary.left);
             self.value(expr);
             self.diagnostics.report_range(first.span, second.span, power_message("**", expr));
             return None;
         }
-        // Both operands first, so that the mistakes of both are reported.
-        let (first, second) = (self.value(&binary.left), self.value(&binary.right));
+        // Whatever the first is, so that the mistakes of both are reported.
+        let second = self.value(&binary.right);
         let operator = match binary.op {
             syn::BinOp::Add(_) => Binary::Add,
             syn::BinOp::Sub(_) => Binary::Sub,
             syn::BinOp::Mul(_) => Binary::Mul,
             syn::BinOp::Div(_) if is_integer(&binary.left) && is_integer(&binary.right) => {
                 let message = integer_division_message(&binary.left, &binary.right);
-                return self.mistake_over(binary, message);
+                return self.mistake_between(first_span(&binary.left), last_span(&binary.right), message);
             }
             syn::BinOp::Div(_) => Binary::Div,
             syn::BinOp::BitXor(caret) => {
@@ -238,8 +262,7 @@ impl<R: Resolver> Lowering<'_, R> {
         Some(self.graph.binary(operator, first?, second?))
     }
 
-    fn method(&mut self, call: &syn::ExprMethodCall) -> Option<ExprId> {
-        let receiver = self.value(&call.receiver);
+    fn method(&mut self, call: &syn::ExprMethodCall, receiver: Option<ExprId>) -> Option<ExprId> {
         let method = call.method.to_string();
         let arguments: Vec<&syn::Expr> = call.args.iter().collect();
         match (method.as_str(), arguments.as_slice()) {

@@ -37,14 +37,17 @@ pub(super) fn power_message(sign: &str, operand: &syn::Expr) -> String {
 
 /// Whether Rust would compute an expression in integers.
 pub(super) fn is_integer(expression: &syn::Expr) -> bool {
-    match expression {
-        syn::Expr::Lit(literal) => {
-            matches!(&literal.lit, syn::Lit::Int(integer) if integer.suffix() != "f64")
+    let mut left = expression;
+    loop {
+        left = match left {
+            syn::Expr::Lit(literal) => {
+                return matches!(&literal.lit, syn::Lit::Int(integer) if integer.suffix() != "f64");
+            }
+            syn::Expr::Paren(inner) => &inner.expr,
+            syn::Expr::Unary(unary) => &unary.expr,
+            syn::Expr::Binary(binary) if is_integer(&binary.right) => &binary.left,
+            _ => return false,
         }
-        syn::Expr::Paren(inner) => is_integer(&inner.expr),
-        syn::Expr::Unary(unary) => is_integer(&unary.expr),
-        syn::Expr::Binary(binary) => is_integer(&binary.left) && is_integer(&binary.right),
-        _ => false,
     }
 }
 

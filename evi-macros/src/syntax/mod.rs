@@ -7,6 +7,8 @@ mod attribute;
 mod expression;
 mod integers;
 mod item;
+mod nesting;
+mod spine;
 
 pub(crate) use attribute::{Declaration, Field, NotAnItem, parse};
 pub(crate) use expression::{Expression, Resolved, Resolver, lower};

@@ -7,6 +7,7 @@
 mod differentiation;
 mod emission;
 mod graph;
+mod long_expressions;
 mod mistakes;
 mod printing;
 mod scheduling;

@@ -18,6 +18,8 @@ use super::{Binary, ExprId, Graph, Node, Symbol, Unary};
 
 /// Nodes that are printed of one expression, about ten lines of text: what is beyond them is an ellipsis.
 const LONGEST_EXPRESSION: usize = 400;
+/// Levels of parentheses and functions that are printed: nobody reads deeper, and every level is a recursion.
+const DEEPEST_EXPRESSION: usize = 30;
 
 /// What symbols and shared expressions are called.
 pub(crate) struct Names<'a> {
@@ -68,6 +70,8 @@ struct Printer<'a> {
     /// Nodes below each node, counted as often as they are printed.
     sizes: HashMap<ExprId, usize>,
     remaining: Cell<usize>,
+    /// Levels above what is being printed.
+    depth: Cell<usize>,
 }
 
 /// The factors of a product, without its sign.
@@ -88,7 +92,15 @@ impl<'a> Printer<'a> {
     ) -> Self {
         let is_leaf = |id| names.shared.contains_key(&id) && defined != Some(id);
         let sizes = tree_sizes(graph, root, is_leaf);
-        Self { graph, names, notation, defined, sizes, remaining: Cell::new(LONGEST_EXPRESSION) }
+        Self {
+            graph,
+            names,
+            notation,
+            defined,
+            sizes,
+            remaining: Cell::new(LONGEST_EXPRESSION),
+            depth: Cell::new(0),
+        }
     }
 
     fn is_latex(&self) -> bool {
@@ -111,24 +123,35 @@ impl<'a> Printer<'a> {
                 self.count_one();
                 Text::atom(symbol(name, false, self.notation))
             }
+            None if self.depth.get() == DEEPEST_EXPRESSION => Text::atom(self.ellipsis()),
             None if self.sizes[&id] > self.remaining.get() => {
                 self.remaining.set(0);
                 Text::atom(self.ellipsis())
             }
-            None => match self.graph.node(id) {
-                Node::Number(number) => self.number(number.value()),
-                Node::Symbol(name) => self.symbol(name),
-                Node::Binary(Binary::Add | Binary::Sub, ..) => self.sum(id),
-                Node::Unary(Unary::Neg, _) | Node::Binary(Binary::Mul | Binary::Div, ..) => self.sum(id),
-                Node::Unary(operator, x) => self.function(operator, x, None),
-                Node::Power(base, exponent) => self.power(base, &exponent.to_string()),
-                Node::Binary(Binary::Powf, a, b) => self.real_power(a, b),
-                Node::Binary(Binary::Atan2, a, b) => {
-                    let (a, b) = (self.sum(a).text, self.sum(b).text);
-                    let name = if self.is_latex() { "\\operatorname{atan2}" } else { "atan2" };
-                    Text::atom(format!("{name}{}", self.parentheses(&format!("{a}, {b}"))))
-                }
-            },
+            None => {
+                self.depth.set(self.depth.get() + 1);
+                let text = self.nested(id);
+                self.depth.set(self.depth.get() - 1);
+                text
+            }
+        }
+    }
+
+    /// The text of a node that goes by no name, one level deeper.
+    fn nested(&self, id: ExprId) -> Text {
+        match self.graph.node(id) {
+            Node::Number(number) => self.number(number.value()),
+            Node::Symbol(name) => self.symbol(name),
+            Node::Binary(Binary::Add | Binary::Sub, ..) => self.sum(id),
+            Node::Unary(Unary::Neg, _) | Node::Binary(Binary::Mul | Binary::Div, ..) => self.sum(id),
+            Node::Unary(operator, x) => self.function(operator, x, None),
+            Node::Power(base, exponent) => self.power(base, &exponent.to_string()),
+            Node::Binary(Binary::Powf, a, b) => self.real_power(a, b),
+            Node::Binary(Binary::Atan2, a, b) => {
+                let (a, b) = (self.sum(a).text, self.sum(b).text);
+                let name = if self.is_latex() { "\\operatorname{atan2}" } else { "atan2" };
+                Text::atom(format!("{name}{}", self.parentheses(&format!("{a}, {b}"))))
+            }
         }
     }
 

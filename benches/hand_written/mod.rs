@@ -1,0 +1,69 @@
+//! Steps as an expert would write them for one scene alone: the measure of what a generated step costs.
+//!
+//! In: a scene of the gallery, a start and a step size. Out: the midpoint step (for constraints, RATTLE) as a map from
+//! `(q, v)` to `(q, v)`, converged to round-off, with its convergence checked; nothing is generic, nothing allocates. Each
+//! file uses what its scene permits and no compiler could be asked to know. What depends on the last steps are first guesses
+//! only.
+//!
+//! A trajectory waits for chains of dependent operations, not for their number: guesses and tests stand beside the chain,
+//! and velocities are kept times `h`, so that none begins with a multiplication.
+
+mod double_pendulum;
+mod spherical_pendulum;
+mod stiff_spring_pendulum;
+
+pub use double_pendulum::HandWrittenDoublePendulum;
+pub use spherical_pendulum::HandWrittenSphericalPendulum;
+pub use stiff_spring_pendulum::{ClosedFormSpringPendulum, HandWrittenSpringPendulum};
+
+/// A run of a step written by hand.
+pub trait HandWritten<const N: usize> {
+    /// Takes one step. Returns the number of Newton corrections, or `None` if they did not converge or the end is not finite;
+    /// then the run stands where it stood.
+    fn advance(&mut self) -> Option<u32>;
+
+    /// Positions, in the scene's coordinates.
+    fn q(&self) -> [f64; N];
+
+    /// Velocities.
+    fn v(&self) -> [f64; N];
+}
+
+/// Corrections after which an iteration is given up.
+const MAX_CORRECTIONS: u32 = 30;
+
+/// The value that a cubic through the last four, newest first, predicts.
+#[inline(always)]
+fn extrapolated([newest, second, third, oldest]: [f64; 4]) -> f64 {
+    4.0 * (newest + third) - 6.0 * second - oldest
+}
+
+#[inline(always)]
+fn dot<const N: usize>(a: [f64; N], b: [f64; N]) -> f64 {
+    let mut sum = a[0] * b[0];
+    for i in 1..N {
+        sum += a[i] * b[i];
+    }
+    sum
+}
+
+#[inline(always)]
+fn sum<const N: usize>(a: [f64; N], b: [f64; N]) -> [f64; N] {
+    core::array::from_fn(|i| a[i] + b[i])
+}
+
+#[inline(always)]
+fn difference<const N: usize>(a: [f64; N], b: [f64; N]) -> [f64; N] {
+    core::array::from_fn(|i| a[i] - b[i])
+}
+
+#[inline(always)]
+fn times<const N: usize>(factor: f64, a: [f64; N]) -> [f64; N] {
+    a.map(|x| factor * x)
+}
+
+/// Whether every number is: a sum is finite only if all of its terms are.
+#[inline(always)]
+fn are_finite<const N: usize, const K: usize>(vectors: [[f64; N]; K]) -> bool {
+    vectors.as_flattened().iter().sum::<f64>().is_finite()
+}

@@ -1,0 +1,121 @@
+//! The Legendre transform of a scene with a constant mass matrix, `p = M v + a`, inverted once.
+
+use super::{CoordinateMatrix, Mechanics, Projected};
+use crate::array::Array;
+use crate::linear::{Factorization, SingularMatrix};
+use crate::newton::Tally;
+use crate::system::{LagrangianGradient, MechanicalSystem};
+
+/// Kinetic energy of the velocities that are removed, relative to that of the motion, up to which one projection does: the
+/// velocities are then below 1/128 of the motion's.
+const LARGEST_REST: f64 = 1.0 / 16384.0;
+
+/// `v = M⁻¹ (p − a)` with constant `M` and `a`.
+pub(crate) struct ConstantLegendre<S: MechanicalSystem> {
+    inverse_mass: CoordinateMatrix<S>,
+    /// `a = ∂L/∂v` at `v = 0`.
+    momentum_at_rest: S::PerCoordinate<f64>,
+}
+
+impl<S: MechanicalSystem> ConstantLegendre<S> {
+    /// Whether the scene's transform is of this kind.
+    pub(crate) const EXISTS: bool = S::STRUCTURE.is_separable_with_constant_mass();
+
+    /// # Errors
+    /// [`SingularMatrix`] if `M` is singular: then the constraints are needed to determine the velocity.
+    pub(crate) fn new(mechanics: &Mechanics<S>) -> Result<Self, SingularMatrix> {
+        let at_rest = Array::from_fn(|_| 0.0);
+        let LagrangianGradient { momentum, .. } =
+            S::lagrangian_gradient(&mechanics.constants, 0.0, &at_rest, &at_rest);
+        let inverse_mass = CoordinateMatrix::inverse_of(&mechanics.constant_mass())?;
+        Ok(Self { inverse_mass, momentum_at_rest: momentum })
+    }
+
+    /// The velocity of the momentum `p`.
+    #[inline(always)]
+    pub(crate) fn velocity(&self, p: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
+        self.inverse_mass.times(|i| self.moving_momentum(p, i))
+    }
+
+    /// Factors of `G M⁻¹ Gᵀ`.
+    ///
+    /// # Errors
+    /// [`SingularMatrix`] where the constraints are dependent.
+    #[inline(always)]
+    pub(crate) fn factor_gram(
+        &self,
+        mechanics: &Mechanics<S>,
+        jacobian: &S::PerJacobianEntry<f64>,
+        tally: &mut impl Tally,
+    ) -> Result<S::GramFactors, SingularMatrix> {
+        let directions = mechanics.constraint_directions(jacobian, &self.inverse_mass);
+        let gram = S::GramFactors::factor(&mechanics.gram_matrix(jacobian, &directions))?;
+        if gram.is_fallback() {
+            tally.count_fallback();
+        }
+        Ok(gram)
+    }
+
+    /// Removes from the momentum `p` the impulse `Gᵀ N` that leaves the constraints, `G M⁻¹ Gᵀ N = G v + ∂φ/∂t`, with the
+    /// factors of that matrix. `expected` is close to `N`.
+    ///
+    /// Near a turning point `v` is a small difference of large velocities, whose round-off would stay. Without `expected`
+    /// they are small as well, but for the slowest motions: these are projected once more.
+    #[inline(always)]
+    pub(crate) fn project(
+        &self,
+        mechanics: &Mechanics<S>,
+        gram: &S::GramFactors,
+        jacobian: &S::PerJacobianEntry<f64>,
+        expected: &S::PerConstraint<f64>,
+        mut p: S::PerCoordinate<f64>,
+    ) -> Projected<S> {
+        mechanics.subtract_constraint_force(jacobian.as_ref(), expected.as_ref(), p.as_mut());
+        let removed = self.remove_rest(mechanics, gram, jacobian, &mut p);
+        let mut v = self.velocity(&p);
+        if removed > LARGEST_REST * self.doubled_energy(&p, &v) {
+            v = self.projected_again(mechanics, gram, jacobian, &mut p);
+        }
+        Projected { v, p }
+    }
+
+    #[cold]
+    fn projected_again(
+        &self,
+        mechanics: &Mechanics<S>,
+        gram: &S::GramFactors,
+        jacobian: &S::PerJacobianEntry<f64>,
+        p: &mut S::PerCoordinate<f64>,
+    ) -> S::PerCoordinate<f64> {
+        self.remove_rest(mechanics, gram, jacobian, p);
+        self.velocity(p)
+    }
+
+    /// Removes what leaves the constraints, and returns twice the kinetic energy that it had.
+    #[inline(always)]
+    fn remove_rest(
+        &self,
+        mechanics: &Mechanics<S>,
+        gram: &S::GramFactors,
+        jacobian: &S::PerJacobianEntry<f64>,
+        p: &mut S::PerCoordinate<f64>,
+    ) -> f64 {
+        let rate = mechanics.constraint_rate(jacobian.as_ref(), &self.velocity(p));
+        let mut rest = rate.clone();
+        gram.solve(&mut rest);
+        mechanics.subtract_constraint_force(jacobian.as_ref(), rest.as_ref(), p.as_mut());
+        (0..S::N_CONSTRAINTS).map(|c| rest[c] * rate[c]).sum()
+    }
+
+    /// `(p − a) · v`.
+    #[inline(always)]
+    fn doubled_energy(&self, p: &S::PerCoordinate<f64>, v: &S::PerCoordinate<f64>) -> f64 {
+        (0..S::N_COORDINATES).map(|i| self.moving_momentum(p, i) * v[i]).sum()
+    }
+
+    /// `p − a`, coordinate `i`.
+    #[inline(always)]
+    fn moving_momentum(&self, p: &S::PerCoordinate<f64>, i: usize) -> f64 {
+        if S::STRUCTURE.momentum_vanishes_at_rest { p[i] } else { p[i] - self.momentum_at_rest[i] }
+    }
+}

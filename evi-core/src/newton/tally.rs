@@ -1,0 +1,54 @@
+//! What happens inside steps, counted.
+
+/// What is counted under the steps of a run. A step tells it what happens, as it happens; what a tally does not count costs
+/// nothing.
+pub trait Tally {
+    /// Newton's iteration of a step has converged with so many corrections.
+    #[inline(always)]
+    fn count_corrections(&mut self, corrections: usize) {
+        let _ = corrections;
+    }
+
+    /// A pivot of the scene's own elimination was round-off, and the pivoted dense solve has taken its place.
+    #[inline(always)]
+    fn count_fallback(&mut self) {}
+}
+
+/// Counts nothing.
+impl Tally for () {}
+
+/// Counts the fallbacks on the pivoted dense solve: an increment where one happens, nothing where none does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Fallbacks {
+    /// How often the pivoted dense solve has taken the place of the scene's own elimination.
+    pub fallbacks: u64,
+}
+
+impl Tally for Fallbacks {
+    #[cold]
+    fn count_fallback(&mut self) {
+        self.fallbacks += 1;
+    }
+}
+
+/// Counts everything.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Statistics {
+    /// Corrections of Newton's iterations for the end points of the steps taken; 0 where steps need none. Not those of a
+    /// projection.
+    pub corrections: u64,
+    /// How often the pivoted dense solve has taken the place of the scene's own elimination.
+    pub fallbacks: u64,
+}
+
+impl Tally for Statistics {
+    #[inline]
+    fn count_corrections(&mut self, corrections: usize) {
+        self.corrections += corrections as u64;
+    }
+
+    #[cold]
+    fn count_fallback(&mut self) {
+        self.fallbacks += 1;
+    }
+}
