@@ -15,8 +15,10 @@ use evi_core::baseline::{Rattle, Rk4};
 use evi_core::generic::{GenericEvi, GenericSystem};
 use evi_core::prelude::*;
 use evi_examples::{
-    DoublePendulum, HarmonicOscillator, Pendulum, SphericalPendulum, Start, StiffSpringPendulum,
+    DoublePendulum, DrivenPendulum, HarmonicOscillator, Pendulum, SphericalPendulum, Start,
+    StiffSpringPendulum,
 };
+use evi_tests::scenes::{DampedOscillator, PushedDumbbell};
 
 thread_local! {
     // Constant and without destructor: its first use allocates nothing.
@@ -164,6 +166,28 @@ fn no_step_of_a_galerkin_integrator_allocates() {
     check(DOUBLE, Galerkin::<1>::new(0.01).composed(Composition::suzuki_4()), mild());
 }
 
+#[test]
+fn no_step_with_forces_allocates() {
+    let (driven, start) = (DrivenPendulum::STANDARD, DrivenPendulum::STANDARD.horizontal());
+    check(driven, Evi::midpoint(0.01), start);
+    check(driven, Evi::simpson(0.01).frequency(OMEGA), start);
+    check(driven, Rk4::new(0.01), start);
+    check(DampedOscillator::STANDARD, Evi::simpson(0.01).scene_frequencies(), SWING);
+    let mut run = Simulation::new(driven, Evi::midpoint(0.01)).start(start.q, start.v).unwrap();
+    assert_eq!(allocations(|| assert!(black_box(run.observe())[1].is_finite())), 0);
+    run.advance().unwrap();
+    let dumbbell = PushedDumbbell::STANDARD;
+    let Start { q, v } = dumbbell.turning();
+    let mut run = Simulation::new(dumbbell, Evi::simpson(0.01)).start(q, v).unwrap();
+    let steps = || {
+        for step in 0..1_000 {
+            run.set_inputs([f64::from(step % 5), -1.0]);
+            run.advance().expect("the step exists");
+        }
+    };
+    assert_eq!(allocations(steps), 0);
+}
+
 /// Takes 1,000 steps of the generic path and expects that none allocates.
 #[track_caller]
 fn check_generic<S: GenericSystem, const N: usize>(system: S, scheme: GenericEvi, start: Start<N>) {
@@ -177,6 +201,11 @@ fn no_step_of_the_generic_path_allocates() {
     check_generic(PENDULUM, GenericEvi::midpoint(0.01), SWING);
     check_generic(DOUBLE, GenericEvi::midpoint(0.01), mild());
     check_generic(DOUBLE, GenericEvi::simpson(0.01).frequencies(PER_BODY), mild());
+    check_generic(
+        DrivenPendulum::STANDARD,
+        GenericEvi::midpoint(0.01),
+        DrivenPendulum::STANDARD.horizontal(),
+    );
     check_generic(SPHERICAL, GenericEvi::simpson(0.01).frequency(OMEGA), SPHERICAL.one_radian());
 }
 

@@ -100,7 +100,7 @@ fn write_systems(text: &mut String, kind: &str, pointee: &str, systems: &[(Strin
     .expect("a string takes all text");
 }
 
-/// A struct whose Lagrangian and constraint contain the operator.
+/// A struct whose Lagrangian, constraint, dissipation, force and observed quantity contain the operator.
 fn operator_system(name: &str, value: &str) -> String {
     let positions = ARGUMENT.replace("der(x)", "x").replace("der(y)", "t");
     format!(
@@ -109,7 +109,14 @@ fn operator_system(name: &str, value: &str) -> String {
             coordinates(x, y),
             let u = {ARGUMENT},
             let w = 1.3 + u * (x + y).cos(),
-            lagrangian = {value} + 0.5 * a * der(x).powi(2) + 0.5 * b * der(y).powi(2),
+            let all = {value} + 0.5 * a * der(x).powi(2) + 0.5 * b * der(y).powi(2),
+            lagrangian = all,
+            input(drive, brake),
+            let power = drive * u - brake,
+            dissipation = {value} * u + 0.25 * b * der(x).powi(4),
+            force(y: drive * ({value}) - brake * der(x) * power),
+            observe(first: brake * all),
+            observe(second: drive * all),
             constraint(operator: {{
                 let u = {positions};
                 let w = 1.3 + u * (x + y).cos();

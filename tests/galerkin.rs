@@ -4,12 +4,12 @@ use evi_core::baseline::Rattle;
 use evi_core::generic::GenericSystem;
 use evi_core::prelude::*;
 use evi_core::scheme::NodalCurves;
-use evi_examples::{AndrewsSqueezer, CarAxis, DoublePendulum, SphericalPendulum, Start};
+use evi_examples::{AndrewsSqueezer, CarAxis, DoublePendulum, DrivenPendulum, SphericalPendulum, Start};
 use evi_tests::conservation::{angular_momentum, largest_change, largest_residuals, there_and_back};
 use evi_tests::convergence::check_orders;
 use evi_tests::galerkin::GalerkinAction;
 use evi_tests::motions::{
-    charged_spherical_pendulum, damped_pendulum, gentle_double_pendulum, kapitza_pendulum,
+    Motion, charged_spherical_pendulum, damped_pendulum, gentle_double_pendulum, kapitza_pendulum,
     long_charged_spherical_pendulum, long_double_pendulum_in_angles, modulated_pendulum, relativistic_bead,
 };
 use evi_tests::references::{self, Certified};
@@ -89,6 +89,17 @@ mod order {
     fn time_dependent_lagrangians() {
         check_orders(&modulated_pendulum(), 6, Galerkin::<3>::new, 6.0);
         check_orders(&damped_pendulum(), 6, |h| Galerkin::<3>::new(h).frequency(3.0), 6.0);
+    }
+
+    /// Drag and a drive that depends on time, with a constraint.
+    #[test]
+    fn forces() {
+        let system = DrivenPendulum::STANDARD;
+        let motion = Motion::certified(system, system.horizontal(), references::DRIVEN_PENDULUM, 50);
+        let motion = Motion { multipliers: Vec::new(), ..motion.without_energy() };
+        check_orders(&motion, 4, Galerkin::<2>::new, 4.0);
+        check_orders(&motion, 4, Galerkin::<3>::new, 6.0);
+        check_orders(&motion, 4, |h| Evi::midpoint(h).composed(Composition::kahan_li_6()), 6.0);
     }
 
     #[test]

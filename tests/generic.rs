@@ -7,12 +7,13 @@ use evi_core::mechanics::ProjectionError;
 use evi_core::prelude::*;
 use evi_core::scalar::Scalar;
 use evi_examples::{
-    DoublePendulum, HarmonicOscillator, Pendulum, SphericalPendulum, Start, StiffSpringPendulum,
+    DoublePendulum, DrivenPendulum, HarmonicOscillator, Pendulum, SphericalPendulum, Start,
+    StiffSpringPendulum,
 };
 use evi_tests::largest_difference;
 use evi_tests::scenes::{
-    ChargedParticle, ChargedSphericalPendulum, DampedPendulum, DoublePendulumInAngles, Dumbbell,
-    KapitzaPendulum, ModulatedPendulum, RelativisticBead,
+    ChargedParticle, ChargedSphericalPendulum, DampedOscillator, DampedPendulum, DoublePendulumInAngles,
+    Dumbbell, KapitzaPendulum, ModulatedPendulum, MotorisedDoublePendulum, PushedDumbbell, RelativisticBead,
 };
 
 const H: f64 = 0.01;
@@ -42,7 +43,11 @@ where
     let mut generic = generic.start_projected(system, T0, &q, &v).expect("near a consistent start");
     let start = generic.q().to_vec();
     let (mut largest, mut sizes) = (0.0_f64, [0.0_f64; 3]);
-    for _ in 0..100 {
+    for step in 0..100 {
+        for (k, input) in specialised.inputs_mut().as_mut().iter_mut().enumerate() {
+            *input = 0.3 * f64::from(step % 9) - k as f64;
+        }
+        generic.inputs_mut().copy_from_slice(specialised.state().inputs().as_ref());
         specialised.advance().expect("the step exists");
         generic.advance().expect("the step exists");
         let state = specialised.state();
@@ -58,7 +63,8 @@ where
     }
     assert!(largest_difference(&start, generic.q()) > 1e-3, "the run stood still");
     let state = specialised.state();
-    let expected = specialised.mechanics().acceleration(state.t(), state.q(), state.v()).expect("determined");
+    let (mechanics, inputs) = (specialised.mechanics(), state.inputs());
+    let expected = mechanics.acceleration_with(state.t(), state.q(), state.v(), inputs).expect("determined");
     let found = generic.acceleration().expect("determined");
     let pairs: [(&[f64], &[f64]); 2] = [
         (expected.acceleration.as_ref(), found.acceleration.as_slice()),
@@ -165,6 +171,26 @@ fn gyroscopic_coupling() {
 fn gyroscopic_coupling_and_a_constraint() {
     let pendulum = ChargedSphericalPendulum::STANDARD;
     check(pendulum, pendulum.one_radian());
+}
+
+#[test]
+fn drag_a_drive_and_a_constraint() {
+    check(DrivenPendulum::STANDARD, DrivenPendulum::STANDARD.horizontal());
+}
+
+#[test]
+fn drag_and_inputs_and_a_constraint() {
+    check(PushedDumbbell::STANDARD, PushedDumbbell::STANDARD.turning());
+}
+
+#[test]
+fn forces_whose_derivatives_are_not_symmetric() {
+    check(MotorisedDoublePendulum::STANDARD, DoublePendulumInAngles::MODERATE);
+}
+
+#[test]
+fn a_damped_oscillator() {
+    check(DampedOscillator::STANDARD, Start { q: [1.0], v: [0.5] });
 }
 
 #[test]

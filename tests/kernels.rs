@@ -56,6 +56,10 @@ trait System {
     fn kernels_rounded(&self, at: &Arguments<Rounded>) -> Values<Rounded>;
     fn lagrangian(&self, t: Outlined, q: &[Outlined], v: &[Outlined]) -> Outlined;
     fn constraints(&self, t: Outlined, q: &[Outlined]) -> Vec<Outlined>;
+    fn n_inputs(&self) -> usize;
+    fn n_observables(&self) -> usize;
+    fn dissipation(&self, t: Outlined, q: &[Outlined], v: &[Outlined]) -> Outlined;
+    fn forces(&self, t: Outlined, q: &[Outlined], v: &[Outlined], inputs: &[Outlined]) -> Vec<Outlined>;
 }
 
 impl<S: MechanicalSystem + GenericSystem> System for S {
@@ -83,6 +87,21 @@ impl<S: MechanicalSystem + GenericSystem> System for S {
         let mut residuals = vec![Outlined::from_f64(0.0); S::N_CONSTRAINTS];
         GenericSystem::constraints(self, t, q, &mut residuals);
         residuals
+    }
+    fn n_inputs(&self) -> usize {
+        assert_eq!(S::N_INPUTS, GenericSystem::n_inputs(self));
+        S::N_INPUTS
+    }
+    fn n_observables(&self) -> usize {
+        S::OBSERVABLES.len()
+    }
+    fn dissipation(&self, t: Outlined, q: &[Outlined], v: &[Outlined]) -> Outlined {
+        GenericSystem::dissipation(self, t, q, v)
+    }
+    fn forces(&self, t: Outlined, q: &[Outlined], v: &[Outlined], inputs: &[Outlined]) -> Vec<Outlined> {
+        let mut forces = vec![Outlined::from_f64(0.0); S::N_COORDINATES];
+        GenericSystem::add_forces(self, t, q, v, inputs, &mut forces);
+        forces
     }
 }
 
@@ -124,6 +143,7 @@ struct Arguments<T> {
     t: T,
     q: Vec<T>,
     v: Vec<T>,
+    inputs: Vec<T>,
 }
 
 impl Arguments<f64> {
@@ -133,12 +153,20 @@ impl Arguments<f64> {
         let n = system.n_coordinates();
         let mut values = |n: usize| (0..n).map(|_| random.between(-1.4, 1.4)).collect();
         let (q, v): (Vec<f64>, Vec<f64>) = (values(n), values(n));
-        Self { parameters: system.parameters(), t: random.between(0.2, 1.4), q, v }
+        let t = random.between(0.2, 1.4);
+        let inputs = (0..system.n_inputs()).map(|_| random.between(0.3, 1.4)).collect();
+        Self { parameters: system.parameters(), t, q, v, inputs }
     }
 
     fn map<T>(&self, convert: impl Fn(f64) -> T) -> Arguments<T> {
         let all = |values: &[f64]| values.iter().map(|&value| convert(value)).collect();
-        Arguments { parameters: all(&self.parameters), t: convert(self.t), q: all(&self.q), v: all(&self.v) }
+        Arguments {
+            parameters: all(&self.parameters),
+            t: convert(self.t),
+            q: all(&self.q),
+            v: all(&self.v),
+            inputs: all(&self.inputs),
+        }
     }
 }
 
@@ -153,6 +181,10 @@ struct Values<T> {
     fused_constraints: Vec<T>,
     jacobian_entries: Vec<T>,
     curvature: Vec<T>,
+    forces: Vec<T>,
+    fused_forces: Vec<T>,
+    force_entries: Vec<T>,
+    observables: Vec<T>,
 }
 
 fn evaluate<S: MechanicalSystem, T: Scalar>(at: &Arguments<T>) -> Values<T> {
@@ -162,7 +194,13 @@ fn evaluate<S: MechanicalSystem, T: Scalar>(at: &Arguments<T>) -> Values<T> {
     let gradient = S::lagrangian_gradient(&constants, at.t, &q, &v);
     let (fused_gradient, hessian_entries) = S::lagrangian_derivatives(&constants, at.t, &q, &v);
     let (fused_constraints, jacobian_entries) = S::constraint_derivatives(&constants, at.t, &q);
+    let inputs = S::PerInput::<T>::from_fn(|i| at.inputs[i]);
+    let (fused_forces, force_entries) = S::force_derivatives(&constants, at.t, &q, &v, &inputs);
     Values {
+        forces: S::forces(&constants, at.t, &q, &v, &inputs).as_ref().to_vec(),
+        fused_forces: fused_forces.as_ref().to_vec(),
+        force_entries: force_entries.as_ref().to_vec(),
+        observables: S::observables(&constants, at.t, &q, &v, &inputs).as_ref().to_vec(),
         lagrangian: S::lagrangian(&constants, at.t, &q, &v),
         gradient: [gradient.force.as_ref().to_vec(), gradient.momentum.as_ref().to_vec()],
         fused_gradient: [fused_gradient.force.as_ref().to_vec(), fused_gradient.momentum.as_ref().to_vec()],
@@ -184,11 +222,12 @@ struct Block<T> {
 /// What the kernels say: matrices assembled from the structure's patterns, absent entries zero.
 fn blocks<T: Scalar>(system: &dyn System, values: Values<T>) -> Vec<Block<T>> {
     let (n, m) = (system.n_coordinates(), system.n_constraints());
-    let Structure { hessian, jacobian, .. } = system.structure();
+    let Structure { hessian, jacobian, forces, .. } = system.structure();
     let dense =
         |entries: &[Entry], shape, varying: &[T]| assembled(entries, shape, &values.constants, varying);
     let of_lagrangian = |entries, shape| dense(entries, shape, &values.hessian_entries);
     let of_constraints = |entries, shape| dense(entries, shape, &values.jacobian_entries);
+    let of_forces = |entries| dense(entries, (n, n), &values.force_entries);
     let matrices = [
         ("qq", lower_triangle(of_lagrangian(hessian.qq, (n, n)), n)),
         ("vq", of_lagrangian(hessian.vq, (n, n))),
@@ -196,6 +235,8 @@ fn blocks<T: Scalar>(system: &dyn System, values: Values<T>) -> Vec<Block<T>> {
         ("vt", of_lagrangian(hessian.vt, (n, 1))),
         ("∂φ/∂q", of_constraints(jacobian.q, (m, n))),
         ("∂φ/∂t", of_constraints(jacobian.t, (m, 1))),
+        ("∂f/∂q", of_forces(forces.q)),
+        ("∂f/∂v", of_forces(forces.v)),
     ];
     let [force, momentum] = values.gradient;
     let [fused_force, fused_momentum] = values.fused_gradient;
@@ -208,6 +249,9 @@ fn blocks<T: Scalar>(system: &dyn System, values: Values<T>) -> Vec<Block<T>> {
         ("φ", values.constraints),
         ("fused φ", values.fused_constraints),
         ("γ", values.curvature),
+        ("f", values.forces),
+        ("fused f", values.fused_forces),
+        ("observed", values.observables),
     ];
     vectors.into_iter().chain(matrices).map(|(name, values)| Block { name, values }).collect()
 }
@@ -264,6 +308,32 @@ fn reference(system: &dyn System, at: &Arguments<f64>) -> Vec<Block<f64>> {
         let places = (0..n).flat_map(|row| (0..=row).map(move |col| (row, col)));
         places.map(|(row, col)| second(offset + row, offset + col)).collect()
     };
+    // The force in every direction: the generalized one, less the slope of the dissipation.
+    let force = |along: usize| -> Vec<Outlined> {
+        let part = |direction: usize, index| f64::from(u8::from(direction == index));
+        let seeded = |first: usize, offset: usize, values: &[f64]| -> Vec<Outlined> {
+            let seed = |(i, &value)| Outlined::new(value, part(first, offset + i), part(along, offset + i));
+            values.iter().enumerate().map(seed).collect()
+        };
+        let t = Outlined::new(at.t, 0.0, part(along, time));
+        let inputs: Vec<Outlined> = at.inputs.iter().map(|&u| Outlined::from_f64(u)).collect();
+        let none = 2 * n + 1;
+        let generalized = system.forces(t, &seeded(none, 0, &at.q), &seeded(none, n, &at.v), &inputs);
+        let slope = |i: usize| system.dissipation(t, &seeded(n + i, 0, &at.q), &seeded(n + i, n, &at.v)).0;
+        let total = |(i, force): (usize, Outlined)| {
+            let slope = slope(i);
+            Outlined::new(force.0.re - slope.eps1, 0.0, force.0.eps2 - slope.eps1eps2)
+        };
+        generalized.into_iter().enumerate().map(total).collect()
+    };
+    let force_columns: Vec<Vec<Outlined>> = (0..2 * n).map(force).collect();
+    let forces: Vec<f64> = force_columns[0].iter().map(|force| force.0.re).collect();
+    let force_slopes = |offset: usize| -> Vec<f64> {
+        (0..n * n).map(|k| force_columns[offset + k % n][k / n].0.eps2).collect()
+    };
+    // Scenes that observe something observe L times the second and the first input.
+    let value = lagrangian(0, 0).0.re;
+    let observed = (0..system.n_observables()).map(|k| at.inputs[1 - k] * value).collect();
     let columns: Vec<Vec<Outlined>> = (0..n).map(along).collect();
     let residuals: Vec<f64> = motion.iter().map(|residual| residual.0.re).collect();
     [
@@ -275,12 +345,17 @@ fn reference(system: &dyn System, at: &Arguments<f64>) -> Vec<Block<f64>> {
         ("φ", residuals.clone()),
         ("fused φ", residuals),
         ("γ", motion.iter().map(|residual| residual.0.eps1eps2).collect()),
+        ("f", forces.clone()),
+        ("fused f", forces),
+        ("observed", observed),
         ("qq", lower(0)),
         ("vq", (0..n * n).map(|k| second(n + k / n, k % n)).collect()),
         ("vv", lower(n)),
         ("vt", (0..n).map(|row| second(n + row, time)).collect()),
         ("∂φ/∂q", (0..m * n).map(|k| columns[k % n][k / n].0.eps1).collect()),
         ("∂φ/∂t", along(time).iter().map(|residual| residual.0.eps1).collect()),
+        ("∂f/∂q", force_slopes(0)),
+        ("∂f/∂v", force_slopes(n)),
     ]
     .map(|(name, values)| Block { name, values })
     .into()
@@ -304,7 +379,9 @@ fn check(name: &str, system: &dyn System, n_points: u64) {
             assert_eq!(values.name, references.name);
             compare(&format!("{name} at point {seed}, {}", values.name), &values.values, &references.values);
         }
-        for block in ["momentum", "vv", "∂φ/∂q"] {
+        let of_forces: &[&str] =
+            if system.n_inputs() > 0 { &["f", "∂f/∂q", "∂f/∂v", "observed"] } else { &[] };
+        for &block in ["momentum", "vv", "∂φ/∂q"].iter().chain(of_forces) {
             let reference = references.iter().find(|reference| reference.name == block);
             let largest = reference.map_or(0.0, |reference| largest(&reference.values));
             assert!(largest > 1e-3, "{name} at point {seed}: {block} is {largest}, nothing is compared");

@@ -5,10 +5,12 @@ use evi_core::system::{
     Block, Dependence, Entry, EntryValue, KernelOperations, KernelReport, MassShape, Operations, Potential,
     Structure, SystemReport,
 };
-use evi_examples::{DoublePendulum, HarmonicOscillator, Pendulum, SphericalPendulum, StiffSpringPendulum};
+use evi_examples::{
+    DoublePendulum, DrivenPendulum, HarmonicOscillator, Pendulum, SphericalPendulum, StiffSpringPendulum,
+};
 use evi_tests::scenes::{
-    ChargedParticle, ChargedSphericalPendulum, DampedPendulum, DoublePendulumInAngles, Dumbbell,
-    KapitzaPendulum, ModulatedPendulum, RelativisticBead,
+    ChargedParticle, ChargedSphericalPendulum, DampedOscillator, DampedPendulum, DoublePendulumInAngles,
+    Dumbbell, KapitzaPendulum, ModulatedPendulum, MotorisedDoublePendulum, RelativisticBead,
 };
 use expect_test::{Expect, expect};
 
@@ -322,6 +324,97 @@ fn report_of_the_pendulum_in_an_angle() {
           time derivatives: time appears nowhere
           multipliers: the scene has no constraints
     "#]]);
+}
+
+#[test]
+fn report_of_a_scene_with_forces() {
+    check_report::<DrivenPendulum>(expect![[r#"
+        DrivenPendulum
+          coordinates  x, y
+          parameters   m, l, g, c, a, w
+          observed     angle, power
+
+        Equations
+               L = T − V
+               T = ½ m (ẋ² + ẏ²)
+               V = m g y
+               D = ½ drag
+               f_x = drive
+               angle = atan2(x, −y)
+               power = drive ẋ − drag
+               drag = c (ẋ² + ẏ²)
+               drive = a cos(w t)
+          rod: x² + y² = l²
+
+        Structure
+          mass matrix  constant, diagonal
+          potential    affine in q
+          Hessian of L qq zero, vq zero, vv constant, vt zero
+          momentum     zero at rest
+          time         in the forces
+          forces       on x, y; vary with v and t
+          constraints  nonlinear in q: rod
+
+        Matrix of a step   · zero, c constant, x varying
+               x y │ rod
+            x  c · │  x
+            y  · c │  x
+          rod  x x │  ·
+          unknowns: 3
+
+        Operations per call      + −     ×     ÷  f(x)   temporaries  statements
+          constants                  ·     3     ·     ·             ·           5
+          lagrangian                 2     4     ·     ·             ·           1
+          lagrangian_gradient        ·     2     ·     ·             ·           2
+          lagrangian_derivatives     ·     2     ·     ·             ·           2
+          constraints                2     2     ·     ·             ·           1
+          constraint_derivatives     2     4     ·     ·             ·           3
+          constraint_curvature       1     4     ·     ·             ·           1
+          forces                     1     4     ·     1             1           3
+          force_derivatives          1     4     ·     1             1           3
+          observables                2     6     ·     2             1           3
+
+        Left out
+          mass matrix: constant, folded once per run
+          iteration for the velocity: it is linear in the momentum
+          potential Hessian: zero, the force is uniform
+          coupling of positions and velocities: zero
+    "#]]);
+}
+
+#[test]
+fn forces_inputs_frequencies_and_observed_quantities_are_reported() {
+    check_equations::<DampedOscillator>(&[
+        "L = T − V",
+        "T = ½ m ẋ²",
+        "V = ½ k x²",
+        "D = ½ c ẋ²",
+        "f_x = push",
+        "ω_x = √(k/m)",
+        "energy = ½ m ẋ² + ½ k x²",
+    ]);
+    let report = DampedOscillator::REPORT.to_string();
+    for line in
+        ["  inputs       push\n", "  observed     energy\n", "  forces       on x; vary with v and inputs\n"]
+    {
+        assert!(report.contains(line), "{line} is missing in {report}");
+    }
+    // No folded step: the oscillator's L is quadratic, but a force acts.
+    assert!(report.contains("  unknowns: 1\n"), "{report}");
+    expect![[r#"
+        \begin{aligned}
+          L &= T - V \\
+          T &= \frac{1}{2} (m_1 + m_2) l_1^2 \dot{a}^2 + \frac{1}{2} m_2 l_2^2 \dot{b}^2 + m_2 l_1 l_2 \dot{a} \dot{b} \cos(a - b) \\
+          V &= -(m_1 + m_2) g l_1 \cos a - m_2 g l_2 \cos b \\
+          D &= \frac{1}{2} \mathrm{inner} \dot{a}^2 + \frac{1}{4} \mathrm{outer} (\dot{b} - \dot{a})^4 \\
+          f_{b} &= \mathrm{torque} \sin(a - 2 b) \cos(w t)
+        \end{aligned}
+    "#]].assert_eq(&MotorisedDoublePendulum::REPORT.latex().to_string());
+    let of = MotorisedDoublePendulum::STRUCTURE.forces;
+    assert_eq!(
+        (of.forced, of.on, of.on_inputs),
+        (&[0, 1][..], Dependence { on_q: true, on_v: true, on_t: true }, false)
+    );
 }
 
 #[test]

@@ -39,6 +39,12 @@ folded!(Folded, {}, [],);
 folded!(FoldedWithField, { colour }, [],);
 folded!(FoldedWithDefinition, {}, [let radius = (x1.powi(2) + y1.powi(2)).sqrt(),],);
 folded!(FoldedWithNothing, { k }, [], + 0.0 * k * x1.powi(4) + 0.0);
+folded!(FoldedWithBystanders, { k }, [
+    dissipation = 0.0 * k * der(x1).powi(2),
+    force(y1: k * x2 - k * x2),
+    frequency(x1: k),
+    observe(height: y1 * t),
+],);
 folded!(FoldedWithSpring, { k }, [], + 0.5 * k * (x1 * x2 + y1.powi(2)));
 
 /// A mass on a spring, whose force is not linear.
@@ -71,6 +77,12 @@ general!(General, {}, [],);
 general!(GeneralWithField, { colour }, [],);
 general!(GeneralWithDefinition, {}, [let angle = (y / x).atan(),],);
 general!(GeneralWithNothing, { k }, [], + 0.0 * k * x.powi(4) + 0.0);
+general!(GeneralWithBystanders, { k }, [
+    dissipation = 0.0 * k * der(x).powi(2),
+    force(y: k * x - k * x),
+    frequency(x: k),
+    observe(height: y * t),
+],);
 general!(GeneralWithSpring, { k }, [], + 0.5 * k * x.powi(4));
 
 trait Counted {
@@ -98,16 +110,18 @@ fn counted_steps<S: MechanicalSystem, M: OneStep<S>>(run: &mut Run<S, M>, steps:
 
 type Take = fn(u64) -> f64;
 
-const SCENES: [(&str, Take); 10] = [
+const SCENES: [(&str, Take); 12] = [
     ("folded", Folded::take),
     ("folded, unused field", FoldedWithField::take),
     ("folded, unused let", FoldedWithDefinition::take),
     ("folded, zero potential", FoldedWithNothing::take),
+    ("folded, zero force, frequency, observed", FoldedWithBystanders::take),
     ("folded, a spring", FoldedWithSpring::take),
     ("general", General::take),
     ("general, unused field", GeneralWithField::take),
     ("general, unused let", GeneralWithDefinition::take),
     ("general, zero potential", GeneralWithNothing::take),
+    ("general, zero force, frequency, observed", GeneralWithBystanders::take),
     ("general, a spring", GeneralWithSpring::take),
 ];
 
@@ -146,12 +160,14 @@ fn what_nothing_uses_adds_no_instruction_to_a_step() {
     let counts: Vec<u64> =
         (0..SCENES.len()).map(|scene| instructions(scene).expect("valgrind runs")).collect();
     for ((name, _), count) in SCENES.iter().zip(&counts) {
-        println!("{name:<24} {count} instructions in {COUNTED} steps");
+        println!("{name:<40} {count} instructions in {COUNTED} steps");
     }
-    let (folded, general) = counts.split_at(5);
+    let (folded, general) = counts.split_at(6);
     for counts in [folded, general] {
-        let [plain, field, definition, nothing, spring] = counts else { unreachable!("five of each") };
-        assert_eq!([field, definition, nothing], [plain; 3]);
+        let [plain, field, definition, nothing, bystanders, spring] = counts else {
+            unreachable!("six of each")
+        };
+        assert_eq!([field, definition, nothing, bystanders], [plain; 4]);
         // Something is counted, and it depends on the scene.
         assert!(*plain > 100 * COUNTED && spring != plain);
     }

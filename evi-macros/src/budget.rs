@@ -33,8 +33,23 @@ pub(crate) fn check(graph: &Graph, model: &Model, programs: &Programs, diagnosti
         .constraints
         .iter()
         .map(|(name, residual)| (operations(*residual), format!("constraint `{name}`"), name.span()));
+    let dissipation = model
+        .forces
+        .dissipation
+        .iter()
+        .map(|(keyword, root)| (operations(*root), "`dissipation`".to_owned(), keyword.span()));
+    let forces = model.forces.generalized.iter().map(|(_, coordinate, root)| {
+        (operations(*root), format!("the force on `{coordinate}`"), coordinate.span())
+    });
+    let forces = dissipation.chain(forces);
+    let observables = model
+        .observables
+        .iter()
+        .map(|(name, root)| (operations(*root), format!("`observe({name}: ..)`"), name.span()));
     let mut contributions: Vec<_> = match kernel {
-        "constants" => energies.chain(constraints).collect(),
+        "constants" => energies.chain(constraints).chain(forces).chain(observables).collect(),
+        "observables" => observables.collect(),
+        _ if kernel.starts_with("force") => forces.collect(),
         _ if kernel.starts_with("constraint") => constraints.collect(),
         _ => energies.collect(),
     };

@@ -17,7 +17,8 @@ pub(crate) fn rate(graph: &mut Graph, root: ExprId) -> Option<ExprId> {
     directional(graph, root, |graph, symbol| match symbol {
         Symbol::Coordinate(i) => Some(graph.symbol(Symbol::Velocity(i))),
         Symbol::Time => Some(graph.number(1.0)),
-        Symbol::Parameter(_) | Symbol::NamedConstant(_) | Symbol::Velocity(_) => None,
+        // An input is constant over a step.
+        Symbol::Parameter(_) | Symbol::NamedConstant(_) | Symbol::Velocity(_) | Symbol::Input(_) => None,
     })
 }
 

@@ -39,6 +39,11 @@ mod tests;
 /// | `lagrangian = EXPR`, or `kinetic = EXPR, potential = EXPR` | `L(t, q, v)`, or `L = T − V` |
 /// | `constraint(NAME: LHS == RHS)` | the holonomic constraint `φ = LHS − RHS = 0` |
 /// | `let NAME = EXPR` | a shared subexpression, usable below |
+/// | `dissipation = EXPR` | Rayleigh's function `D(t, q, v)`: the force `−∂D/∂v` |
+/// | `force(COORDINATE: EXPR)` | a generalized force on a coordinate, of `t, q, v` and inputs |
+/// | `input(NAME, ..)` | values that the caller sets from step to step |
+/// | `frequency(COORDINATE, ..: EXPR)` | the frequency of the curves of these coordinates, of parameters alone |
+/// | `observe(NAME: EXPR)` | a quantity to record, of `t, q, v` and inputs |
 ///
 /// `EXPR` is a Rust expression in the struct's `f64` fields, coordinates, `der(coordinate)` for velocities, the
 /// time `t`, numbers, and constants (a path or a `SCREAMING_CASE` name, passed on to rustc) with `+ - * /`, unary minus,

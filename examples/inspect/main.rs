@@ -9,8 +9,8 @@ use clap::Parser;
 use evi_core::prelude::*;
 use evi_core::report::SystemReport;
 use evi_examples::{
-    AndrewsSqueezer, CarAxis, DoublePendulum, HarmonicOscillator, Pendulum, SphericalPendulum,
-    StiffSpringPendulum,
+    AndrewsSqueezer, CarAxis, DoublePendulum, DrivenPendulum, HarmonicOscillator, KapitzaPendulum, Pendulum,
+    SphericalPendulum, StiffSpringPendulum,
 };
 
 /// Equations, structure and generated code of a scene of the gallery.
@@ -39,11 +39,13 @@ struct Scene {
     source: Option<&'static str>,
 }
 
-const SCENES: [Scene; 7] = [
+const SCENES: [Scene; 9] = [
     Scene::of::<AndrewsSqueezer>(),
     Scene::of::<CarAxis>(),
     Scene::of::<DoublePendulum>(),
+    Scene::of::<DrivenPendulum>(),
     Scene::of::<HarmonicOscillator>(),
+    Scene::of::<KapitzaPendulum>(),
     Scene::of::<Pendulum>(),
     Scene::of::<SphericalPendulum>(),
     Scene::of::<StiffSpringPendulum>(),

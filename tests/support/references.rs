@@ -88,7 +88,7 @@ pub const STIFF_SPRING_PENDULUM_1E4: Certified = Certified {
     multipliers: &[],
 };
 
-/// `scenes::KapitzaPendulum::STANDARD` from `near_inverted()`.
+/// `KapitzaPendulum::STANDARD` from `near_inverted()`.
 pub const RHEONOMIC_PENDULUM: Certified = Certified {
     t: 1.0,
     q: &[-0.006748973597739527, 0.31534922097362666],
@@ -208,3 +208,22 @@ pub const ANDREWS_SQUEEZER: [Certified; 3] = [
         ],
     },
 ];
+
+/// `KapitzaPendulum::LONG` from `near_inverted()`.
+pub const RHEONOMIC_PENDULUM_LONG: Certified = Certified {
+    t: 1.0,
+    q: &[0.4698360524659136, 0.8981788387240196],
+    v: &[2.1555726086724096, 1.8168147957977885],
+    multipliers: &[4.77893722665562],
+};
+
+/// `DrivenPendulum::STANDARD` from `horizontal()`.
+pub const DRIVEN_PENDULUM: Certified = Certified {
+    t: 1.0,
+    q: &[-0.9616585838860878, -0.2742494631502571],
+    v: &[-0.4570493297651815, 1.6026482100614385],
+    multipliers: &[2.8339290986586283],
+};
+
+/// Its mechanical energy there, which was 0.
+pub const DRIVEN_PENDULUM_ENERGY: f64 = -1.301699545978055;

@@ -2,6 +2,7 @@
 //! accelerations by hand as an independent reference.
 
 use evi_core::prelude::*;
+pub use evi_examples::KapitzaPendulum;
 use evi_examples::{DoublePendulum, Start};
 
 /// Plane double pendulum in its angles from the downward vertical: the mass matrix depends on the
@@ -208,38 +209,6 @@ impl RelativisticBead {
     }
 }
 
-/// Pendulum on a pivot that moves up and down, `y_p = a cos wt`: the constraint depends on time.
-#[derive(MechanicalSystem, Clone, Copy, Debug)]
-#[evi(
-    coordinates(x, y),
-    kinetic = 0.5 * m * (der(x).powi(2) + der(y).powi(2)),
-    potential = m * g * y,
-    constraint(rod: x.powi(2) + (y - a * (w * t).cos()).powi(2) == l.powi(2)),
-)]
-pub struct KapitzaPendulum {
-    /// Mass.
-    pub m: f64,
-    /// Length of the rod.
-    pub l: f64,
-    /// Gravitational acceleration.
-    pub g: f64,
-    /// Amplitude of the pivot.
-    pub a: f64,
-    /// Angular frequency of the pivot.
-    pub w: f64,
-}
-
-impl KapitzaPendulum {
-    /// `(a w)² > 2 g l`: stays near its inverted position.
-    pub const STANDARD: Self = Self { m: 1.0, l: 0.3, g: 9.81, a: 0.1, w: 30.0 };
-
-    /// At rest, 0.1 rad from the inverted position.
-    pub fn near_inverted(&self) -> Start<2> {
-        let (sine, cosine) = 0.1_f64.sin_cos();
-        Start { q: [self.l * sine, self.a + self.l * cosine], v: [0.0; 2] }
-    }
-}
-
 /// Two masses on a massless rod in the plane, without any force: linear and angular momentum are conserved.
 #[derive(MechanicalSystem, Clone, Copy, Debug)]
 #[evi(
@@ -264,5 +233,166 @@ impl Dumbbell {
     /// Lying along the x-axis near the origin, turning at 2 rad/s while it moves.
     pub const fn turning(&self) -> Start<4> {
         Start { q: [0.5, 0.2, 0.5 + self.l, 0.2], v: [0.3, -0.4, 0.3, -0.4 + 2.0 * self.l] }
+    }
+}
+
+/// `KapitzaPendulum` in its angle from the downward vertical: no constraint, a kinetic energy that depends on time.
+#[derive(MechanicalSystem, Clone, Copy, Debug)]
+#[evi(
+    coordinates(theta),
+    let pivot = -a * w * (w * t).sin(),
+    kinetic = 0.5 * m * ((l * theta.cos() * der(theta)).powi(2) + (pivot + l * theta.sin() * der(theta)).powi(2)),
+    potential = m * g * (a * (w * t).cos() - l * theta.cos()),
+)]
+pub struct KapitzaPendulumInAngle {
+    /// Mass.
+    pub m: f64,
+    /// Length of the rod.
+    pub l: f64,
+    /// Gravitational acceleration.
+    pub g: f64,
+    /// Amplitude of the pivot.
+    pub a: f64,
+    /// Angular frequency of the pivot.
+    pub w: f64,
+}
+
+impl KapitzaPendulumInAngle {
+    /// The same pendulum.
+    pub const fn of(KapitzaPendulum { m, l, g, a, w }: KapitzaPendulum) -> Self {
+        Self { m, l, g, a, w }
+    }
+}
+
+/// `DoublePendulumInAngles` with friction in both joints and a torque that follows the rods and the clock: a
+/// mass matrix that depends on the configuration, forces whose derivatives are not symmetric.
+#[derive(MechanicalSystem, Clone, Copy, Debug)]
+#[evi(
+    coordinates(a, b),
+    kinetic = 0.5 * (m1 + m2) * l1.powi(2) * der(a).powi(2) + 0.5 * m2 * l2.powi(2) * der(b).powi(2)
+            + m2 * l1 * l2 * der(a) * der(b) * (a - b).cos(),
+    potential = -(m1 + m2) * g * l1 * a.cos() - m2 * g * l2 * b.cos(),
+    dissipation = 0.5 * inner * der(a).powi(2) + 0.25 * outer * (der(b) - der(a)).powi(4),
+    force(b: torque * (a - 2.0 * b).sin() * (w * t).cos()),
+)]
+pub struct MotorisedDoublePendulum {
+    /// Mass of the inner bob.
+    pub m1: f64,
+    /// Mass of the outer bob.
+    pub m2: f64,
+    /// Length of the inner rod.
+    pub l1: f64,
+    /// Length of the outer rod.
+    pub l2: f64,
+    /// Gravitational acceleration.
+    pub g: f64,
+    /// Friction of the inner joint, torque per rate.
+    pub inner: f64,
+    /// Friction of the outer joint, torque per cube of the rate.
+    pub outer: f64,
+    /// Largest torque on the outer rod.
+    pub torque: f64,
+    /// Angular frequency of the torque.
+    pub w: f64,
+}
+
+impl MotorisedDoublePendulum {
+    /// Unequal parameters.
+    pub const STANDARD: Self =
+        Self { m1: 1.3, m2: 0.7, l1: 0.9, l2: 1.1, g: 9.81, inner: 0.4, outer: 0.3, torque: 2.5, w: 3.0 };
+
+    /// Torques of friction and motor.
+    pub fn forces(&self, t: f64, q: &[f64; 2], v: &[f64; 2]) -> [f64; 2] {
+        let outer = self.outer * (v[1] - v[0]).powi(3);
+        let motor = self.torque * (q[0] - 2.0 * q[1]).sin() * (self.w * t).cos();
+        [outer - self.inner * v[0], motor - outer]
+    }
+
+    /// Angular accelerations: those of the free pendulum, and the inverse mass matrix times the torques.
+    pub fn acceleration(&self, t: f64, q: &[f64; 2], v: &[f64; 2]) -> [f64; 2] {
+        let Self { m1, m2, l1, l2, g, .. } = *self;
+        let free = DoublePendulumInAngles { m1, m2, l1, l2, g }.acceleration(q, v);
+        let [fa, fb] = self.forces(t, q, v);
+        let (aa, bb) = ((m1 + m2) * l1 * l1, m2 * l2 * l2);
+        let ab = m2 * l1 * l2 * (q[0] - q[1]).cos();
+        let determinant = aa * bb - ab * ab;
+        [free[0] + (bb * fa - ab * fb) / determinant, free[1] + (aa * fb - ab * fa) / determinant]
+    }
+}
+
+/// Two masses on a rod in the plane, in a fluid that drags each with its own coefficient, and one of them
+/// pushed by the caller; no other force.
+#[derive(MechanicalSystem, Clone, Copy, Debug)]
+#[evi(
+    coordinates(x1, y1, x2, y2),
+    kinetic = 0.5 * m1 * (der(x1).powi(2) + der(y1).powi(2)) + 0.5 * m2 * (der(x2).powi(2) + der(y2).powi(2)),
+    potential = 0.0,
+    constraint(rod: (x2 - x1).powi(2) + (y2 - y1).powi(2) == l.powi(2)),
+    input(push_x, push_y),
+    dissipation = 0.5 * c1 * (der(x1).powi(2) + der(y1).powi(2)) + 0.5 * c2 * (der(x2).powi(2) + der(y2).powi(2)),
+    force(x1: push_x),
+    force(y1: push_y),
+    observe(angle: (y2 - y1).atan2(x2 - x1)),
+    observe(power: push_x * der(x1) + push_y * der(y1)),
+)]
+pub struct PushedDumbbell {
+    /// The mass that is pushed.
+    pub m1: f64,
+    /// The other mass.
+    pub m2: f64,
+    /// Length of the rod.
+    pub l: f64,
+    /// Drag of the mass that is pushed, force per velocity.
+    pub c1: f64,
+    /// Drag of the other mass.
+    pub c2: f64,
+}
+
+impl PushedDumbbell {
+    /// Unequal masses and drags.
+    pub const STANDARD: Self = Self { m1: 1.0, m2: 2.0, l: 1.0, c1: 0.3, c2: 0.7 };
+
+    /// As `Dumbbell::turning`.
+    pub const fn turning(&self) -> Start<4> {
+        Dumbbell { m1: self.m1, m2: self.m2, l: self.l }.turning()
+    }
+}
+
+/// Oscillator with linear damping, driven by the caller; its frequency is the scene's.
+#[derive(MechanicalSystem, Clone, Copy, Debug)]
+#[evi(
+    coordinates(x),
+    kinetic = 0.5 * m * der(x).powi(2),
+    potential = 0.5 * k * x.powi(2),
+    dissipation = 0.5 * c * der(x).powi(2),
+    input(push),
+    force(x: push),
+    frequency(x: (k / m).sqrt()),
+    observe(energy: 0.5 * m * der(x).powi(2) + 0.5 * k * x.powi(2)),
+)]
+pub struct DampedOscillator {
+    /// Mass.
+    pub m: f64,
+    /// Stiffness.
+    pub k: f64,
+    /// Damping coefficient, force per velocity.
+    pub c: f64,
+}
+
+impl DampedOscillator {
+    /// Damping ratio 0.1.
+    pub const STANDARD: Self = Self { m: 2.0, k: 8.0, c: 0.8 };
+
+    /// Position and velocity a time `t` after `(x, v)` under a constant push.
+    pub fn exact(&self, t: f64, (x, v): (f64, f64), push: f64) -> (f64, f64) {
+        let Self { m, k, c } = *self;
+        let (decay, rest) = (0.5 * c / m, push / k);
+        let rate = (k / m - decay * decay).sqrt();
+        let (sine, cosine) = (rate * t).sin_cos();
+        let (x, factor) = (x - rest, (-decay * t).exp());
+        (
+            rest + factor * (x * cosine + (v + decay * x) / rate * sine),
+            factor * (v * cosine - (k / m * x + decay * v) / rate * sine),
+        )
     }
 }

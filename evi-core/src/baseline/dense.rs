@@ -1,7 +1,9 @@
 //! A scene without what is known about its structure: every step solves the whole saddle-point system by pivoted dense elimination.
 
 use crate::scalar::Scalar;
-use crate::system::{Dependence, LagrangianGradient, MechanicalSystem, Structure, SystemReport};
+use crate::system::{
+    Dependence, HasFrequencies, LagrangianGradient, MechanicalSystem, Structure, SystemReport,
+};
 
 /// The scene `S` with its emitted kernels, but stepped as by a solver that knows only sizes: nothing is folded or eliminated, every
 /// Newton correction assembles the `(n + m) × (n + m)` matrix `[hA G₀ᵀ; G₁ 0]` and factors it by the pivoted dense
@@ -13,6 +15,8 @@ impl<S: MechanicalSystem> MechanicalSystem for Dense<S> {
     const COORDINATES: &'static [&'static str] = S::COORDINATES;
     const CONSTRAINTS: &'static [&'static str] = S::CONSTRAINTS;
     const PARAMETERS: &'static [&'static str] = S::PARAMETERS;
+    const INPUTS: &'static [&'static str] = S::INPUTS;
+    const OBSERVABLES: &'static [&'static str] = S::OBSERVABLES;
     // Patterns stay, since the kernels fill them. A Lagrangian that might depend on time folds nothing.
     const STRUCTURE: Structure =
         Structure { lagrangian: Dependence { on_t: true, ..S::STRUCTURE.lagrangian }, ..S::STRUCTURE };
@@ -26,6 +30,9 @@ impl<S: MechanicalSystem> MechanicalSystem for Dense<S> {
     type PerConstant<X: Clone> = S::PerConstant<X>;
     type PerHessianEntry<X: Clone> = S::PerHessianEntry<X>;
     type PerJacobianEntry<X: Clone> = S::PerJacobianEntry<X>;
+    type PerInput<X: Clone> = S::PerInput<X>;
+    type PerObservable<X: Clone> = S::PerObservable<X>;
+    type PerForceEntry<X: Clone> = S::PerForceEntry<X>;
 
     type KktFactors = S::DenseKktFactors;
     type DenseKktFactors = S::DenseKktFactors;
@@ -100,5 +107,45 @@ impl<S: MechanicalSystem> MechanicalSystem for Dense<S> {
         v: &Self::PerCoordinate<T>,
     ) -> Self::PerConstraint<T> {
         S::constraint_curvature(constants, t, q, v)
+    }
+
+    #[inline]
+    fn forces<T: Scalar>(
+        constants: &Self::PerConstant<T>,
+        t: T,
+        q: &Self::PerCoordinate<T>,
+        v: &Self::PerCoordinate<T>,
+        inputs: &Self::PerInput<T>,
+    ) -> Self::PerCoordinate<T> {
+        S::forces(constants, t, q, v, inputs)
+    }
+
+    #[inline]
+    fn force_derivatives<T: Scalar>(
+        constants: &Self::PerConstant<T>,
+        t: T,
+        q: &Self::PerCoordinate<T>,
+        v: &Self::PerCoordinate<T>,
+        inputs: &Self::PerInput<T>,
+    ) -> (Self::PerCoordinate<T>, Self::PerForceEntry<T>) {
+        S::force_derivatives(constants, t, q, v, inputs)
+    }
+
+    #[inline]
+    fn observables<T: Scalar>(
+        constants: &Self::PerConstant<T>,
+        t: T,
+        q: &Self::PerCoordinate<T>,
+        v: &Self::PerCoordinate<T>,
+        inputs: &Self::PerInput<T>,
+    ) -> Self::PerObservable<T> {
+        S::observables(constants, t, q, v, inputs)
+    }
+}
+
+impl<S: HasFrequencies> HasFrequencies for Dense<S> {
+    #[inline]
+    fn frequencies<T: Scalar>(constants: &Self::PerConstant<T>) -> Self::PerCoordinate<T> {
+        S::frequencies(constants)
     }
 }

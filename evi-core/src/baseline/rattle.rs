@@ -3,7 +3,7 @@
 use crate::array::Array;
 use crate::integrator::{IterationFailure, OneStep, Scheme, StepError, Symmetric, Tally};
 use crate::linear::{Factorization, SingularMatrix, largest_magnitude};
-use crate::mechanics::{CoordinateMatrix, Mechanics, ProjectionError, State, relative};
+use crate::mechanics::{CoordinateMatrix, ForcePoint, Mechanics, ProjectionError, State, relative};
 use crate::newton::{self, Converged};
 use crate::scheme::{SchemeError, checked_step_size};
 use crate::system::MechanicalSystem;
@@ -15,7 +15,9 @@ use crate::system::MechanicalSystem;
 /// v₁ = v½ + ½h M⁻¹(f(q₁) − G₁ᵀ λ₁)     G₁ v₁ = 0
 /// ```
 ///
-/// Newton runs on the multipliers alone, with the Gram matrix `G₁ M⁻¹ G₀ᵀ`.
+/// Newton runs on the multipliers alone, with the Gram matrix `G₁ M⁻¹ G₀ᵀ`. Forces that are no derivatives of `L` are part of `f`,
+/// which is the trapezoid member of the Lagrange-d'Alembert family; those that depend on velocities would make the kicks implicit
+/// and are refused.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rattle {
     h: f64,
@@ -52,6 +54,10 @@ impl<S: MechanicalSystem> Scheme<S> for Rattle {
             let requirement = "a constant mass matrix and no coupling of velocity with position or time";
             return Err(SchemeError::UnsupportedStructure { scheme: SCHEME, requirement });
         }
+        if S::STRUCTURE.forces.on.on_v {
+            let requirement = "forces that do not depend on velocities";
+            return Err(SchemeError::UnsupportedStructure { scheme: SCHEME, requirement });
+        }
         let requirement = "a mass matrix that is regular, not only on the constraints";
         let inverse_mass = CoordinateMatrix::inverse_of(&mechanics.constant_mass())
             .map_err(|_| SchemeError::UnsupportedStructure { scheme: SCHEME, requirement })?;
@@ -77,9 +83,9 @@ impl<S: MechanicalSystem> OneStep<S> for RattleStep<S> {
 
     fn advance(&mut self, state: &mut State<S>, tally: &mut impl Tally) -> Result<(), StepError> {
         let t = state.t + self.h;
-        let mut half_step_velocity = self.kicked(state.t, &state.q, &state.v);
+        let mut half_step_velocity = self.kicked(state.t, &state.q, &state.v, &state.inputs);
         let q = self.solve_positions(state, &mut half_step_velocity, tally)?;
-        let mut v = self.kicked(t, &q, &half_step_velocity);
+        let mut v = self.kicked(t, &q, &half_step_velocity, &state.inputs);
         self.project(t, &q, &mut v, tally)
             .map_err(|cause| StepError::Projection { t, cause: ProjectionError::Singular(cause) })?;
         let p = self.mechanics.momentum_at(t, &q, &v);
@@ -89,8 +95,15 @@ impl<S: MechanicalSystem> OneStep<S> for RattleStep<S> {
 
 impl<S: MechanicalSystem> RattleStep<S> {
     /// `v + ½h M⁻¹ f(t, q)`.
-    fn kicked(&self, t: f64, q: &S::PerCoordinate<f64>, v: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
-        let force = S::lagrangian_gradient(&self.mechanics.constants, t, q, v).force;
+    fn kicked(
+        &self,
+        t: f64,
+        q: &S::PerCoordinate<f64>,
+        v: &S::PerCoordinate<f64>,
+        inputs: &S::PerInput<f64>,
+    ) -> S::PerCoordinate<f64> {
+        let mut force = S::lagrangian_gradient(&self.mechanics.constants, t, q, v).force;
+        self.mechanics.add_force(ForcePoint { t, q, v, inputs }, &mut force);
         let kick = self.inverse_mass.times(|i| force[i]);
         Array::from_fn(|i| v[i] + 0.5 * self.h * kick[i])
     }

@@ -7,7 +7,7 @@ use crate::scheme::{SchemeError, checked_step_size};
 use crate::system::MechanicalSystem;
 
 /// Kutta's method of order 4 (Hairer, Nørsett, Wanner, Solving ODEs I, sec. II.1) for `q̈ = a(t, q, v)`, where the
-/// accelerations solve the index-1 equations with multipliers. Explicit, not symplectic; the constraints are
+/// accelerations solve the index-1 equations with multipliers and forces. Explicit, not symplectic; the constraints are
 /// differentiated twice and drift.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rk4 {
@@ -47,11 +47,12 @@ impl<S: MechanicalSystem> Rk4Step<S> {
         t: f64,
         q: &S::PerCoordinate<f64>,
         v: S::PerCoordinate<f64>,
+        inputs: &S::PerInput<f64>,
         tally: &mut impl Tally,
     ) -> Result<Slope<S>, StepError> {
         let acceleration = self
             .mechanics
-            .acceleration_tallied(t, q, &v, tally)
+            .acceleration_tallied(t, q, &v, inputs, tally)
             .map_err(|matrix| StepError::Singular { t, correction: 0, matrix })?;
         Ok(Slope { v: acceleration.acceleration, q: v })
     }
@@ -66,7 +67,7 @@ impl<S: MechanicalSystem> Rk4Step<S> {
     ) -> Result<Slope<S>, StepError> {
         let q = Array::from_fn(|i| state.q[i] + length * along.q[i]);
         let v = Array::from_fn(|i| state.v[i] + length * along.v[i]);
-        self.slope(state.t + length, &q, v, tally)
+        self.slope(state.t + length, &q, v, &state.inputs, tally)
     }
 }
 
@@ -81,7 +82,7 @@ impl<S: MechanicalSystem> OneStep<S> for Rk4Step<S> {
 
     fn advance(&mut self, state: &mut State<S>, tally: &mut impl Tally) -> Result<(), StepError> {
         let h = self.h;
-        let k1 = self.slope(state.t, &state.q, state.v.clone(), tally)?;
+        let k1 = self.slope(state.t, &state.q, state.v.clone(), &state.inputs, tally)?;
         let k2 = self.slope_after(state, 0.5 * h, &k1, tally)?;
         let k3 = self.slope_after(state, 0.5 * h, &k2, tally)?;
         let k4 = self.slope_after(state, h, &k3, tally)?;

@@ -19,7 +19,7 @@ pub struct GenericAcceleration {
 }
 
 impl<S: GenericSystem> GenericStep<S> {
-    /// Solves `M q̈ + Gᵀ λ = ∂L/∂q − (∂²L/∂v∂q) v − ∂²L/∂v∂t`, `G q̈ = −γ`.
+    /// Solves `M q̈ + Gᵀ λ = ∂L/∂q + f − (∂²L/∂v∂q) v − ∂²L/∂v∂t`, `G q̈ = −γ`.
     pub(super) fn acceleration(
         &mut self,
         state: &GenericState,
@@ -35,6 +35,7 @@ impl<S: GenericSystem> GenericStep<S> {
         kkt.factor()?;
         force.fill(0.0);
         derivatives.add_force(at, force);
+        derivatives.add_applied_force(at, &state.inputs, force);
         derivatives.subtract_momentum_drift(at, force);
         derivatives.constraint_curvatures(at, curvature);
         curvature.iter_mut().for_each(|curvature| *curvature = -*curvature);

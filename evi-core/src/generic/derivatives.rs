@@ -42,22 +42,30 @@ pub(super) struct Point<'a> {
 
 /// A system with buffers for its arguments in dual numbers.
 pub(super) struct Derivatives<S> {
-    system: S,
-    n_coordinates: usize,
-    gradient_q: Vec<Gradient>,
-    gradient_v: Vec<Gradient>,
+    pub(super) system: S,
+    pub(super) n_coordinates: usize,
+    pub(super) gradient_q: Vec<Gradient>,
+    pub(super) gradient_v: Vec<Gradient>,
     gradient_residuals: Vec<Gradient>,
-    mixed_q: Vec<Mixed>,
-    mixed_v: Vec<Mixed>,
+    pub(super) mixed_q: Vec<Mixed>,
+    pub(super) mixed_v: Vec<Mixed>,
     mixed_residuals: Vec<Mixed>,
     time_q: Vec<Dual64>,
     time_residuals: Vec<Dual64>,
+    /// Empty for a system without forces, as the two below.
+    pub(super) force: Vec<f64>,
+    pub(super) gradient_force: Vec<Gradient>,
+    pub(super) gradient_inputs: Vec<Gradient>,
 }
 
 impl<S: GenericSystem> Derivatives<S> {
     pub(super) fn new(system: S) -> Self {
         let (n, m) = (system.n_coordinates(), system.n_constraints());
+        let n_forces = if S::HAS_FORCES { n } else { 0 };
         Self {
+            force: vec![0.0; n_forces],
+            gradient_force: vec![Gradient::from_re(0.0); n_forces],
+            gradient_inputs: vec![Gradient::from_re(0.0); system.n_inputs()],
             system,
             n_coordinates: n,
             gradient_q: vec![Gradient::from_re(0.0); n],
@@ -175,15 +183,25 @@ impl<S: GenericSystem> Derivatives<S> {
     fn mixed_along(
         &mut self,
         at: Point<'_>,
+        rows: (usize, impl Fn(usize) -> Seed),
+        columns: (usize, impl Fn(usize) -> Seed),
+    ) -> Mixed {
+        self.set_mixed(at, rows, columns);
+        self.system.lagrangian(Mixed::from_re(at.t), &self.mixed_q, &self.mixed_v)
+    }
+
+    /// Sets the arguments with the chunks of infinitesimals that begin at `row` and `col`.
+    pub(super) fn set_mixed(
+        &mut self,
+        at: Point<'_>,
         (row, row_seed): (usize, impl Fn(usize) -> Seed),
         (col, col_seed): (usize, impl Fn(usize) -> Seed),
-    ) -> Mixed {
+    ) {
         for i in 0..self.n_coordinates {
             let (along_row, along_col) = (row_seed(i), col_seed(i));
             self.mixed_q[i] = mixed(at.q[i], i, (row, along_row.q), (col, along_col.q));
             self.mixed_v[i] = mixed(at.v[i], i, (row, along_row.v), (col, along_col.v));
         }
-        self.system.lagrangian(Mixed::from_re(at.t), &self.mixed_q, &self.mixed_v)
     }
 
     /// Overwrites `residuals` with `φ(t, q)` and `jacobian` with `G = ∂φ/∂q`.

@@ -14,6 +14,8 @@ mod chunk;
 #[cfg(feature = "generic")]
 mod derivatives;
 #[cfg(feature = "generic")]
+mod forces;
+#[cfg(feature = "generic")]
 mod kkt;
 #[cfg(feature = "generic")]
 mod projection;
@@ -46,4 +48,23 @@ pub trait GenericSystem {
 
     /// Overwrites `residuals`, of length `m`, with `φ(t, q)`.
     fn constraints<T: Scalar>(&self, t: T, q: &[T], residuals: &mut [T]);
+
+    /// Number of inputs: values that forces depend on and that are set from step to step.
+    fn n_inputs(&self) -> usize {
+        0
+    }
+
+    /// Whether the system has a [`dissipation`](Self::dissipation), which is not evaluated otherwise.
+    const HAS_DISSIPATION: bool = false;
+
+    /// Rayleigh's function `D(t, q, v)`: the force is `−∂D/∂v`.
+    fn dissipation<T: Scalar>(&self, _t: T, _q: &[T], _v: &[T]) -> T {
+        T::from_f64(0.0)
+    }
+
+    /// Whether the system [adds forces](Self::add_forces), which are not evaluated otherwise.
+    const HAS_FORCES: bool = false;
+
+    /// Adds the generalized forces that are neither derivatives of `L` nor of the dissipation to `forces`, of length `n`.
+    fn add_forces<T: Scalar>(&self, _t: T, _q: &[T], _v: &[T], _inputs: &[T], _forces: &mut [T]) {}
 }

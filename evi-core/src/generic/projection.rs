@@ -21,7 +21,7 @@ impl<S: GenericSystem> GenericStep<S> {
     pub(super) fn project_momentum(&mut self, state: &mut GenericState) -> Result<(), ProjectionError> {
         let Self { derivatives, kkt, unknowns, impulse, time_rates, .. } = self;
         let n = state.q.len();
-        let GenericState { t, q, v, p, jacobian } = state;
+        let GenericState { t, q, v, p, jacobian, .. } = state;
         derivatives.constraints(*t, q, time_rates, jacobian);
         derivatives.constraint_time_rates(*t, q, time_rates);
         impulse.fill(0.0);

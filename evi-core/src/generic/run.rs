@@ -53,18 +53,18 @@ impl<S: GenericSystem> GenericRun<S> {
 
     /// A run whose momentum is still to be found.
     fn at(scheme: &GenericEvi, system: S, (t, q, v): (f64, &[f64], &[f64])) -> Result<Self, StartError> {
-        let (n, m) = (system.n_coordinates(), system.n_constraints());
+        let n = system.n_coordinates();
+        let (mut state, next) = (GenericState::zero(&system), GenericState::zero(&system));
         let step = GenericStep::new(system, scheme.nodes(n)?);
         for (quantity, values) in [("position", q), ("velocity", v)] {
             if values.len() != n {
                 return Err(StartError::Length { quantity, expected: n, found: values.len() });
             }
         }
-        let mut state = GenericState::zero(n, m);
         state.t = t;
         state.q.copy_from_slice(q);
         state.v.copy_from_slice(v);
-        let run = Self { step, state, next: GenericState::zero(n, m), start_time: t, steps: 0 };
+        let run = Self { step, state, next, start_time: t, steps: 0 };
         let numbers = [("time", &[t][..]), ("position", q), ("velocity", v), ("energy", &[run.energy()])];
         for (quantity, values) in numbers {
             if let Some(index) = values.iter().position(|value| !value.is_finite()) {
@@ -131,6 +131,16 @@ impl<S: GenericSystem> GenericRun<S> {
     /// Momentum `p = ∂L/∂v`.
     pub fn p(&self) -> &[f64] {
         &self.state.p
+    }
+
+    /// The inputs for the steps from here on, zero until they are set; constant over a step.
+    pub fn inputs(&self) -> &[f64] {
+        &self.state.inputs
+    }
+
+    /// The inputs for the steps from here on, to be set.
+    pub fn inputs_mut(&mut self) -> &mut [f64] {
+        &mut self.state.inputs
     }
 
     /// Number of steps taken.

@@ -4,10 +4,10 @@
 //! stopping rule are those of the specialised path:
 //!
 //! ```text
-//! h (−D₁L_d(q₀, q₀ + d) − p₀) + G₀ᵀ Λ = 0        φ(t₁, q₀ + d) = 0        p⁻ = D₂L_d(q₀, q₁)
+//! h (−D₁L_d(q₀, q₀ + d) − f⁻ − p₀) + G₀ᵀ Λ = 0        φ(t₁, q₀ + d) = 0        p⁻ = D₂L_d(q₀, q₁) + f⁺
 //! ```
 //!
-//! for `(d, Λ)` by Newton's iteration with `[hA G₀ᵀ; G₁ 0]`, `A = −D₁D₂L_d`, from `d = h v₀`. The projection of `p⁻` is
+//! for `(d, Λ)` by Newton's iteration with `[hA G₀ᵀ; G₁ 0]`, `A = −D₁D₂L_d − ∂f⁻/∂q₁`, from `d = h v₀`. The projection of `p⁻` is
 //! left to [`projection`](super::projection).
 
 use nalgebra::DMatrix;
@@ -27,15 +27,19 @@ pub(super) struct GenericState {
     pub(super) q: Vec<f64>,
     pub(super) v: Vec<f64>,
     pub(super) p: Vec<f64>,
+    /// Constant over the step that begins here.
+    pub(super) inputs: Vec<f64>,
     /// `G(t, q)`: the end of one step is the start of the next.
     pub(super) jacobian: DMatrix<f64>,
 }
 
 impl GenericState {
-    pub(super) fn zero(n_coordinates: usize, n_constraints: usize) -> Self {
-        let zeros = || vec![0.0; n_coordinates];
-        let jacobian = DMatrix::zeros(n_constraints, n_coordinates);
-        Self { t: 0.0, q: zeros(), v: zeros(), p: zeros(), jacobian }
+    pub(super) fn zero(system: &impl GenericSystem) -> Self {
+        let n = system.n_coordinates();
+        let zeros = || vec![0.0; n];
+        let jacobian = DMatrix::zeros(system.n_constraints(), n);
+        let inputs = vec![0.0; system.n_inputs()];
+        Self { t: 0.0, q: zeros(), v: zeros(), p: zeros(), inputs, jacobian }
     }
 
     fn is_finite(&self) -> bool {
@@ -88,6 +92,7 @@ impl<S: GenericSystem> GenericStep<S> {
         let h = self.h();
         self.solve(state, next)?;
         next.t = state.t + h;
+        next.inputs.copy_from_slice(&state.inputs);
         for i in 0..state.q.len() {
             next.q[i] = state.q[i] + self.difference[i];
             next.v[i] = self.difference[i] / h;
@@ -150,6 +155,14 @@ impl<S: GenericSystem> GenericStep<S> {
                 momentum_row,
                 &mut kkt.matrix,
             );
+            derivatives.add_virtual_work_with_derivatives(
+                at,
+                &state.inputs,
+                (&node.starts, &node.ends),
+                -node.weight,
+                momentum_row,
+                &mut kkt.matrix,
+            );
         }
         for i in 0..n {
             momentum_row[i] = h * (momentum_row[i] - state.p[i]);
@@ -162,7 +175,7 @@ impl<S: GenericSystem> GenericStep<S> {
         kkt.set_jacobians(&state.jacobian, &end.jacobian);
     }
 
-    /// Overwrites `momentum` with `p⁻ = D₂L_d(q₀, q₀ + d)`.
+    /// Overwrites `momentum` with `p⁻ = D₂L_d(q₀, q₀ + d) + f⁺`.
     fn end_momentum(&mut self, state: &GenericState, momentum: &mut [f64]) {
         let Self { derivatives, nodes, difference, x, v, .. } = self;
         momentum.fill(0.0);
@@ -170,6 +183,7 @@ impl<S: GenericSystem> GenericStep<S> {
             node.interpolate(nodes.h, &state.q, difference, x, v);
             let at = Point { t: state.t + (0.5 + node.offset) * nodes.h, q: x, v };
             derivatives.add_gradient(at, &node.ends, node.weight, momentum);
+            derivatives.add_virtual_work(at, &state.inputs, &node.ends, node.weight, momentum);
         }
     }
 }

@@ -8,7 +8,9 @@ use crate::mechanics::{
     ConstantLegendre, DiscreteLagrangian, FoldedStep, Mechanics, Projected, ProjectionError, State, StepStart,
 };
 use crate::newton::{self, Converged, Tally};
-use crate::scheme::{Frequency, Interpolant, Linear, Quadrature, SchemeError, checked_step_size};
+use crate::scheme::{
+    Frequency, Interpolant, Linear, Quadrature, SceneFrequencies, SchemeError, checked_step_size,
+};
 use crate::system::MechanicalSystem;
 
 /// An exponential variational integrator with `K` intermediate points.
@@ -63,6 +65,29 @@ impl<const K: usize> Evi<K> {
         Evi { quadrature: self.quadrature, h: self.h, interpolant: frequency.into() }
     }
 
+    /// Interpolates every coordinate with the frequency that the scene gives it by an item `frequency(..)`, on straight lines
+    /// those without one. Schemes for scenes without such items do not compile.
+    ///
+    /// ```
+    /// use evi_core::prelude::*;
+    /// #[derive(MechanicalSystem)]
+    /// #[evi(
+    ///     coordinates(x, y),
+    ///     kinetic = 0.5 * m * (der(x).powi(2) + der(y).powi(2)),
+    ///     potential = 0.5 * k * y.powi(2),
+    ///     frequency(y: (k / m).sqrt()),
+    /// )]
+    /// struct Rail { m: f64, k: f64 }
+    /// let simulation = Simulation::new(Rail { m: 2.0, k: 8.0 }, Evi::simpson(0.1).scene_frequencies());
+    /// let mut run = simulation.start([0.0, 1.0], [1.0, 0.0])?;
+    /// let state = run.advance_to(10.0)?;
+    /// assert!((state.q()[0] - 10.0).abs() < 1e-13 && (state.q()[1] - 20.0_f64.cos()).abs() < 1e-4);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn scene_frequencies(self) -> Evi<K, SceneFrequencies> {
+        Evi { quadrature: self.quadrature, h: self.h, interpolant: SceneFrequencies }
+    }
+
     /// Interpolates coordinate `i` with `frequencies[i]`, [`Frequency::ZERO`] on a straight line. Coordinates of one body should
     /// share theirs.
     pub fn frequencies<const N: usize>(self, frequencies: [Frequency; N]) -> Evi<K, [Frequency; N]> {
@@ -89,7 +114,7 @@ impl<S: MechanicalSystem, const K: usize, F: Interpolant<S>> Scheme<S> for Evi<K
 
     fn prepare(&self, mechanics: Mechanics<S>) -> Result<Self::Step, SchemeError> {
         let h = checked_step_size(self.h)?;
-        let table = self.interpolant.table(&self.quadrature, h)?;
+        let table = self.interpolant.table(&mechanics.constants, &self.quadrature, h)?;
         let action = DiscreteLagrangian::new(mechanics, table, self.quadrature, h);
         // Where M or A is singular, the constraints are needed to determine the motion: the general step uses them.
         let folded = if FoldedStep::<S>::EXISTS { FoldedStep::new(&action).ok() } else { None };
@@ -129,10 +154,11 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> OneStep<S> for EviS
         }
         let h = self.action.h();
         let start_of_curve = Array::from_fn(|i| h * state.v[i]);
-        let (difference, impulse) = self.solve(state.t, &state.q, &state.p, start_of_curve, tally)?;
+        let (difference, impulse) =
+            self.solve(state.t, &state.q, &state.p, &state.inputs, start_of_curve, tally)?;
         let t = state.t + h;
         let q = Array::from_fn(|i| state.q[i] + difference[i]);
-        let momentum = self.action.end_momentum(state.t, &state.q, &difference);
+        let momentum = self.action.end_momentum(state.t, &state.q, &difference, &state.inputs);
         let Projected { v, p } = self
             .project(t, &q, momentum, &difference, &impulse, tally)
             .map_err(|cause| StepError::Projection { t, cause })?;
@@ -143,7 +169,8 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> OneStep<S> for EviS
 impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
     /// The two-step view: `q_next` from two consecutive configurations, the first at time `t_prev`.
     ///
-    /// Solves `D₂L_d(q_prev, q_curr) + D₁L_d(q_curr, q_next) − h Gᵀ(q_curr) λ = 0`, `φ(q_next) = 0`.
+    /// Solves `D₂L_d(q_prev, q_curr) + f⁺ + D₁L_d(q_curr, q_next) + f⁻ − h Gᵀ(q_curr) λ = 0`, `φ(q_next) = 0`; for scenes
+    /// without inputs, which the compiler checks.
     ///
     /// # Errors
     /// [`StepError`] as for [`OneStep::advance`].
@@ -153,10 +180,13 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
         q_prev: &S::PerCoordinate<f64>,
         q_curr: &S::PerCoordinate<f64>,
     ) -> Result<S::PerCoordinate<f64>, StepError> {
+        const { assert!(S::N_INPUTS == 0, "this scene has inputs: take steps from states, which hold them") };
+        let inputs = Array::from_fn(|_| 0.0);
         let difference = S::PerCoordinate::<f64>::from_fn(|i| q_curr[i] - q_prev[i]);
         // The part of this momentum normal to the constraints at q_curr goes into the impulse: no projection needed.
-        let momentum = self.action.end_momentum(t_prev, q_prev, &difference);
-        let (difference, _) = self.solve(t_prev + self.action.h(), q_curr, &momentum, difference, &mut ())?;
+        let momentum = self.action.end_momentum(t_prev, q_prev, &difference, &inputs);
+        let t = t_prev + self.action.h();
+        let (difference, _) = self.solve(t, q_curr, &momentum, &inputs, difference, &mut ())?;
         Ok(Array::from_fn(|i| q_curr[i] + difference[i]))
     }
 
@@ -194,11 +224,12 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
         t: f64,
         q: &S::PerCoordinate<f64>,
         p: &S::PerCoordinate<f64>,
+        inputs: &S::PerInput<f64>,
         mut difference: S::PerCoordinate<f64>,
         tally: &mut impl Tally,
     ) -> Result<Unknowns<S>, StepError> {
         let (_, jacobian) = S::constraint_derivatives(&self.mechanics().constants, t, q);
-        let start = StepStart { t, q, p, jacobian };
+        let start = StepStart { t, q, p, inputs, jacobian };
         let mut impulse = S::PerConstraint::<f64>::from_fn(|_| 0.0);
         let mut constraint_residual = 0.0;
         let mut smallest_pivot_ratio = 1.0_f64;

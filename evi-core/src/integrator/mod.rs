@@ -147,7 +147,7 @@ impl IterationFailure {
 }
 
 impl<S: MechanicalSystem> State<S> {
-    /// Overwrites the state, if every number of the new one is finite.
+    /// Overwrites the state but for the inputs, if every number of the new one is finite.
     #[inline]
     pub(crate) fn replace(
         &mut self,
@@ -166,7 +166,7 @@ impl<S: MechanicalSystem> State<S> {
         if !is_finite {
             return Err(StepError::NotFinite { t });
         }
-        *self = Self { t, q, v, p };
+        (self.t, self.q, self.v, self.p) = (t, q, v, p);
         Ok(())
     }
 }

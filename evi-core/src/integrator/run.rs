@@ -77,6 +77,47 @@ impl<S: MechanicalSystem, M: OneStep<S>, T: Tally> Run<S, M, T> {
         self.mechanics().energy(&self.state)
     }
 
+    /// The quantities that the scene observes, by its items `observe`, at the state reached; in the order of
+    /// [`OBSERVABLES`](MechanicalSystem::OBSERVABLES).
+    pub fn observe(&self) -> S::PerObservable<f64> {
+        self.mechanics().observe(&self.state)
+    }
+
+    /// Sets the scene's inputs, in the order of [`INPUTS`](MechanicalSystem::INPUTS), for the steps from here on.
+    ///
+    /// Inputs are constant over a step, as the output of a digital controller is. A smooth signal `u(t)` is sampled at the
+    /// middle of the step, `u(t + ½h)`: that is of second order, sampling at its start of first order. A signal that
+    /// is a formula of `t` is better written into the force itself. A step with inputs that are not finite fails.
+    ///
+    /// ```
+    /// use evi_core::prelude::*;
+    /// #[derive(MechanicalSystem)]
+    /// #[evi(
+    ///     coordinates(x),
+    ///     kinetic = 0.5 * m * der(x).powi(2),
+    ///     potential = 0.0,
+    ///     input(thrust),
+    ///     force(x: thrust),
+    /// )]
+    /// struct Cart { m: f64 }
+    /// let mut run = Simulation::new(Cart { m: 2.0 }, Evi::midpoint(0.1)).start([0.0], [0.0])?;
+    /// for _ in 0..100 {
+    ///     let away = 1.0 - run.state().q()[0];
+    ///     run.set_inputs([2.0 * away - 3.0 * run.state().v()[0]]);
+    ///     run.advance()?;
+    /// }
+    /// assert!((run.state().q()[0] - 1.0).abs() < 1e-2);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn set_inputs(&mut self, inputs: impl Into<S::PerInput<f64>>) {
+        self.state.inputs = inputs.into();
+    }
+
+    /// The scene's inputs for the steps from here on, to change one by one; as for [`set_inputs`](Self::set_inputs).
+    pub fn inputs_mut(&mut self) -> &mut S::PerInput<f64> {
+        &mut self.state.inputs
+    }
+
     /// Takes one step.
     ///
     /// # Errors
@@ -102,23 +143,26 @@ impl<S: MechanicalSystem, M: OneStep<S>, T: Tally> Run<S, M, T> {
         Ok(&self.state)
     }
 
-    /// Takes the steps of a time span and keeps every state, the present one first.
+    /// Takes the steps of a time span and keeps every state with its observed quantities, the present one first.
     ///
     /// # Errors
     /// [`Interrupted`] with the states up to the step that failed.
     #[cfg(feature = "std")]
     pub fn integrate(&mut self, duration: f64) -> Result<Trajectory<S>, Interrupted<S>> {
-        let start = self.state.clone();
-        let steps = match self.steps_to(start.t + duration) {
-            Ok(steps) => steps,
-            Err(error) => return Err(Interrupted { error, trajectory: Trajectory::starting_at(start, 0) }),
+        let (steps, unreachable) = match self.steps_to(self.state.t + duration) {
+            Ok(steps) => (steps, None),
+            Err(error) => (0, Some(error)),
         };
-        let mut trajectory = Trajectory::starting_at(start, steps);
+        let mut trajectory = Trajectory::expecting(steps);
+        trajectory.push(self.state.clone(), self.observe());
+        if let Some(error) = unreachable {
+            return Err(Interrupted { error, trajectory });
+        }
         for _ in 0..steps {
-            match self.advance() {
-                Ok(state) => trajectory.push(state.clone()),
-                Err(error) => return Err(Interrupted { error, trajectory }),
+            if let Err(error) = self.advance() {
+                return Err(Interrupted { error, trajectory });
             }
+            trajectory.push(self.state.clone(), self.observe());
         }
         Ok(trajectory)
     }

@@ -122,7 +122,8 @@ impl<S: MechanicalSystem, F: Scheme<S>> Simulation<S, F> {
         &self.system
     }
 
-    /// A run from positions and velocities at time 0 that satisfy the constraints.
+    /// A run from positions and velocities at time 0 that satisfy the constraints; its inputs are zero until
+    /// [`Run::set_inputs`].
     ///
     /// # Errors
     /// [`StartError`] for numbers that are not finite, an inconsistent start, a scheme that defines no step, or a
@@ -183,7 +184,7 @@ fn project_velocity<S: MechanicalSystem>(
     v: S::PerCoordinate<f64>,
 ) -> Result<State<S>, StartError> {
     let projected = mechanics.project_velocity(t, &q, v)?;
-    Ok(State { t, q, v: projected.v, p: projected.p })
+    Ok(State { t, q, v: projected.v, p: projected.p, inputs: Array::from_fn(|_| 0.0) })
 }
 
 fn check_finite<S: MechanicalSystem>(

@@ -1,6 +1,6 @@
 //! The step of a quadratic Lagrangian, folded over its nodes.
 //!
-//! When every second derivative of `L` is constant and none couples velocities with positions, the discrete
+//! When every second derivative of `L` is constant, none couples velocities with positions, and no other force acts, the discrete
 //! Euler-Lagrange equations are linear but for the constraints, and a step is a kick, a drift and a kick:
 //!
 //! ```text
@@ -39,7 +39,8 @@ impl<S: MechanicalSystem> FoldedStep<S> {
     /// Whether the steps of the scene can be folded.
     pub(crate) const EXISTS: bool = S::STRUCTURE.hessian.is_constant()
         && S::STRUCTURE.hessian.vq.is_empty()
-        && !S::STRUCTURE.lagrangian.on_t;
+        && !S::STRUCTURE.lagrangian.on_t
+        && !S::STRUCTURE.forces.exist();
 
     /// Folds the action of a step.
     ///

@@ -15,10 +15,11 @@
 //! p⁻ = ∂L_d/∂q_K = p₀ + h Σⱼ bⱼ ∂L/∂q(qⱼ) − Σ G_aᵀ Λ_a / h + Σⱼ bⱼ rⱼ ∂L/∂v(qⱼ, vⱼ)        rⱼ = Σ_a R_ja
 //! ```
 //!
+//! where `∂L/∂q + f` stands for `∂L/∂q` if forces act (see [`super::forces`]),
 //! which is how `p⁻` is computed: no difference of large momenta. `rⱼ` is exactly zero for every space of curves that contains the
 //! constants, so that linear momentum is kept to round-off.
 
-use super::{Mechanics, State};
+use super::{ForceDerivatives, ForcePoint, Mechanics, State};
 use crate::array::Array;
 use crate::linear::{constraint_index, largest_magnitude};
 use crate::scheme::{LobattoNodes, NodalTables};
@@ -151,8 +152,13 @@ impl<S: MechanicalSystem, T: NodalTables<K>, const K: usize> GalerkinAction<S, T
         for node in 0..=K {
             let (t, q) = (self.time(start.t, node), self.position(&start.q, points, node));
             let v = self.velocity(&start.q, points, node);
-            let (gradient, hessian) = S::lagrangian_derivatives(constants, t, &q, &v);
+            let (mut gradient, hessian) = S::lagrangian_derivatives(constants, t, &q, &v);
             let weight = self.nodes.weights[node];
+            if S::STRUCTURE.forces.exist() {
+                let at = ForcePoint { t, q: &q, v: &v, inputs: &start.inputs };
+                let derivatives = self.mechanics.add_force_with_derivatives(at, &mut gradient.force);
+                self.subtract_force_derivatives(node, &derivatives, &mut matrix);
+            }
             for i in 0..n {
                 for a in 0..K {
                     residual[a * block + i] -= h * self.weighted_rate(node, a, i) * gradient.momentum[i];
@@ -237,6 +243,30 @@ impl<S: MechanicalSystem, T: NodalTables<K>, const K: usize> GalerkinAction<S, T
         }
     }
 
+    /// Subtracts this node's part of the derivative of `h² b_a f_a` by `q_b`: `bⱼ δ_aj (h² ∂f/∂q δ_bj + h ∂f/∂v R_jb)`.
+    fn subtract_force_derivatives(
+        &self,
+        node: usize,
+        derivatives: &ForceDerivatives<'_, S>,
+        matrix: &mut Blocks<'_>,
+    ) {
+        let (h, weight) = (self.h, self.nodes.weights[node]);
+        if node == K {
+            return;
+        }
+        if node > 0 {
+            derivatives.for_each_by_q(|row, col, value| {
+                matrix.add((node, row), (node - 1, col), -(weight * h * h * value));
+            });
+        }
+        derivatives.for_each_by_v(|row, col, value| {
+            for b in 0..K {
+                let rate = self.weighted_rate(node, b + 1, col);
+                matrix.add((node, row), (b, col), -(rate * h * value));
+            }
+        });
+    }
+
     /// `p⁻`, from the balance of momentum.
     pub(crate) fn end_momentum(&self, start: &State<S>, points: &Points<S, K>) -> S::PerCoordinate<f64> {
         let h = self.h;
@@ -245,7 +275,9 @@ impl<S: MechanicalSystem, T: NodalTables<K>, const K: usize> GalerkinAction<S, T
         for node in 0..=K {
             let (t, q) = (self.time(start.t, node), self.position(&start.q, points, node));
             let v = self.velocity(&start.q, points, node);
-            let gradient = S::lagrangian_gradient(constants, t, &q, &v);
+            let mut gradient = S::lagrangian_gradient(constants, t, &q, &v);
+            self.mechanics
+                .add_force(ForcePoint { t, q: &q, v: &v, inputs: &start.inputs }, &mut gradient.force);
             let weight = self.nodes.weights[node];
             let mut pull = S::PerCoordinate::<f64>::from_fn(|_| 0.0);
             if node < K {

@@ -1,12 +1,13 @@
 //! Mechanics of a scene in continuous and discrete time, without a step size policy or an iteration of steps.
 //!
-//! In: a scene's kernels and their constants. Out: energies, momenta, projections, accelerations with multipliers
+//! In: a scene's kernels and their constants. Out: energies, momenta, forces, projections, accelerations with multipliers
 //! ([`Mechanics`]), the equations of one step (`DiscreteLagrangian`), and for quadratic Lagrangians the step itself
 //! but for its constraints (`FoldedStep`).
 
 mod constraints;
 mod coordinate_matrix;
 mod folded_step;
+mod forces;
 #[cfg(feature = "std")]
 mod galerkin_equations;
 mod legendre;
@@ -18,6 +19,7 @@ mod step_equations;
 pub(crate) use constraints::{Directions, NOTHING};
 pub(crate) use coordinate_matrix::{CoordinateMatrix, Rows};
 pub(crate) use folded_step::FoldedStep;
+pub(crate) use forces::{ForceDerivatives, ForcePoint};
 #[cfg(feature = "std")]
 pub(crate) use galerkin_equations::{GalerkinAction, Points};
 pub(crate) use legendre::ConstantLegendre;

@@ -1,6 +1,6 @@
 //! The Legendre transform on the constraint manifold, and projections onto the manifold.
 
-use super::Mechanics;
+use super::{ForcePoint, Mechanics};
 use crate::array::Array;
 use crate::linear::{FactoredKkt, SingularMatrix, constraint_index, unknowns};
 use crate::newton::{self, NotConverged, Tally};
@@ -202,12 +202,14 @@ impl<S: MechanicalSystem> Mechanics<S> {
     /// Accelerations and multipliers of the continuous motion at `(t, q, v)`: the index-1 equations
     ///
     /// ```text
-    /// M q̈ + Gᵀ λ = ∂L/∂q − (∂²L/∂v∂q) v − ∂²L/∂v∂t
+    /// M q̈ + Gᵀ λ = ∂L/∂q + f − (∂²L/∂v∂q) v − ∂²L/∂v∂t
     /// G q̈         = −γ
     /// ```
     ///
-    /// so that `d/dt ∂L/∂v − ∂L/∂q + Gᵀ λ = 0`. At the states of an integrator, `λ` has the order of the integrator;
+    /// so that `d/dt ∂L/∂v − ∂L/∂q + Gᵀ λ = f`. At the states of an integrator, `λ` has the order of the integrator;
     /// the multipliers inside its step do not.
+    ///
+    /// For scenes without inputs, which the compiler checks; [`acceleration_with`](Self::acceleration_with) takes them.
     ///
     /// # Errors
     /// [`SingularMatrix`] where mass matrix and constraints do not determine the acceleration.
@@ -217,20 +219,37 @@ impl<S: MechanicalSystem> Mechanics<S> {
         q: &S::PerCoordinate<f64>,
         v: &S::PerCoordinate<f64>,
     ) -> Result<Acceleration<S>, SingularMatrix> {
-        self.acceleration_tallied(t, q, v, &mut ())
+        const { assert!(S::N_INPUTS == 0, "this scene has inputs: call `acceleration_with` and give them") };
+        self.acceleration_with(t, q, v, &Array::from_fn(|_| 0.0))
     }
 
-    /// [`acceleration`](Self::acceleration) under a step.
+    /// Accelerations and multipliers under the inputs `u`.
+    ///
+    /// # Errors
+    /// As for [`acceleration`](Self::acceleration).
+    pub fn acceleration_with(
+        &self,
+        t: f64,
+        q: &S::PerCoordinate<f64>,
+        v: &S::PerCoordinate<f64>,
+        inputs: &S::PerInput<f64>,
+    ) -> Result<Acceleration<S>, SingularMatrix> {
+        self.acceleration_tallied(t, q, v, inputs, &mut ())
+    }
+
+    /// [`acceleration_with`](Self::acceleration_with) under a step.
     #[inline]
     pub(crate) fn acceleration_tallied(
         &self,
         t: f64,
         q: &S::PerCoordinate<f64>,
         v: &S::PerCoordinate<f64>,
+        inputs: &S::PerInput<f64>,
         tally: &mut impl Tally,
     ) -> Result<Acceleration<S>, SingularMatrix> {
         let (LagrangianGradient { mut force, .. }, hessian) =
             S::lagrangian_derivatives(&self.constants, t, q, v);
+        self.add_force(ForcePoint { t, q, v, inputs }, &mut force);
         for entry in S::STRUCTURE.hessian.vq {
             force[entry.row] -= entry.value(self.constants.as_ref(), hessian.as_ref()) * v[entry.col];
         }

@@ -11,6 +11,17 @@ impl<S: MechanicalSystem> Mechanics<S> {
         self.energy_at(state.t(), state.q(), state.v())
     }
 
+    /// The quantities that the scene observes, by the items `observe`, in the order of
+    /// [`OBSERVABLES`](MechanicalSystem::OBSERVABLES).
+    pub fn observe(&self, state: &State<S>) -> S::PerObservable<f64> {
+        S::observables(&self.constants, state.t(), state.q(), state.v(), state.inputs())
+    }
+
+    /// `f(t, q, v, u)`: the generalized forces at a state that are no derivatives of `L`.
+    pub fn forces(&self, state: &State<S>) -> S::PerCoordinate<f64> {
+        S::forces(&self.constants, state.t(), state.q(), state.v(), state.inputs())
+    }
+
     /// Energy `H = v·∂L/∂v − L` at `(t, q, v)`.
     pub fn energy_at(&self, t: f64, q: &S::PerCoordinate<f64>, v: &S::PerCoordinate<f64>) -> f64 {
         let momentum = S::lagrangian_gradient(&self.constants, t, q, v).momentum;

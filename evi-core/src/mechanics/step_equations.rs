@@ -13,9 +13,10 @@
 //! ```
 //!
 //! (Marsden & West, Acta Numerica 10 (2001), sec. 3.5; the first row times `h`, so that every entry of the matrix
-//! stays of order one as `h → 0`). `p⁻ = D₂L_d(q₀, q₁)` is the momentum that arrives at the end of the step.
+//! stays of order one as `h → 0`). `p⁻ = D₂L_d(q₀, q₁)` is the momentum that arrives at the end of the step. Where forces
+//! act, `∂L/∂q + f` stands for `∂L/∂q` in `D₁L_d` and `D₂L_d`: see [`super::forces`].
 
-use super::{Mechanics, NOTHING};
+use super::{ForceDerivatives, ForcePoint, Mechanics, NOTHING};
 use crate::array::Array;
 use crate::linear::{Kkt, unknowns};
 use crate::scheme::{InterpolationTable, NodeCoefficients, Quadrature, interpolate};
@@ -38,6 +39,7 @@ pub(crate) struct StepStart<'a, S: MechanicalSystem> {
     pub(crate) t: f64,
     pub(crate) q: &'a S::PerCoordinate<f64>,
     pub(crate) p: &'a S::PerCoordinate<f64>,
+    pub(crate) inputs: &'a S::PerInput<f64>,
     /// The varying entries of `G₀ = G(t₀, q₀)`.
     pub(crate) jacobian: S::PerJacobianEntry<f64>,
 }
@@ -78,7 +80,8 @@ impl<S: MechanicalSystem, T: InterpolationTable, const K: usize> DiscreteLagrang
     /// [ G₁    0   ]
     /// ```
     ///
-    /// `A` is not symmetric when `L` couples `q` and `v`, and `G₁` moves with the iterate: hence LU, not LDLᵀ.
+    /// `A` is not symmetric when `L` couples `q` and `v` or forces act (then it holds `−∂f⁻/∂q₁`, too), and `G₁` moves with
+    /// the iterate: hence LU, not LDLᵀ.
     #[inline]
     pub(crate) fn linearize(
         &self,
@@ -91,7 +94,12 @@ impl<S: MechanicalSystem, T: InterpolationTable, const K: usize> DiscreteLagrang
         let mut kkt = Kkt::zero();
         let mut start_momentum = S::PerCoordinate::<f64>::from_fn(|_| NOTHING);
         self.for_each_node(start.t, start.q, difference, |node, weight, t, x, v| {
-            let (gradient, hessian) = S::lagrangian_derivatives(constants, t, x, v);
+            let (mut gradient, hessian) = S::lagrangian_derivatives(constants, t, x, v);
+            if S::STRUCTURE.forces.exist() {
+                let at = ForcePoint { t, q: x, v, inputs: start.inputs };
+                let derivatives = self.mechanics.add_force_with_derivatives(at, &mut gradient.force);
+                self.subtract_force_derivatives(node, weight, &derivatives, &mut kkt);
+            }
             self.subtract_d1(node, weight, &gradient, &mut start_momentum);
             self.subtract_d2d1(node, weight, hessian.as_ref(), &mut kkt);
         });
@@ -104,17 +112,19 @@ impl<S: MechanicalSystem, T: InterpolationTable, const K: usize> DiscreteLagrang
         (unknowns::<S>(|i| momentum_row[i], |c| residual[c]), kkt)
     }
 
-    /// `p⁻ = D₂L_d(q₀, q₀ + d) = Σⱼ wⱼ (h g₂ ∂L/∂q + h g₂' ∂L/∂v)`.
+    /// `p⁻ = D₂L_d(q₀, q₀ + d) + f⁺ = Σⱼ wⱼ (h g₂ (∂L/∂q + f) + h g₂' ∂L/∂v)`.
     #[inline]
     pub(crate) fn end_momentum(
         &self,
         t: f64,
         q: &S::PerCoordinate<f64>,
         difference: &S::PerCoordinate<f64>,
+        inputs: &S::PerInput<f64>,
     ) -> S::PerCoordinate<f64> {
         let mut end_momentum = S::PerCoordinate::<f64>::from_fn(|_| NOTHING);
         self.for_each_node(t, q, difference, |node, weight, t, x, v| {
-            let gradient = S::lagrangian_gradient(&self.mechanics.constants, t, x, v);
+            let mut gradient = S::lagrangian_gradient(&self.mechanics.constants, t, x, v);
+            self.mechanics.add_force(ForcePoint { t, q: x, v, inputs }, &mut gradient.force);
             for i in 0..S::N_COORDINATES {
                 let c = self.table.coefficients(node, i);
                 end_momentum[i] +=
@@ -141,7 +151,8 @@ impl<S: MechanicalSystem, T: InterpolationTable, const K: usize> DiscreteLagrang
         }
     }
 
-    /// Subtracts this node's part of `D₁L_d = Σⱼ wⱼ (h g₁ ∂L/∂q + h g₁' ∂L/∂v)`.
+    /// Subtracts this node's part of `D₁L_d = Σⱼ wⱼ (h g₁ ∂L/∂q + h g₁' ∂L/∂v)`, and of `f⁻` where the gradient's force
+    /// holds it, too.
     #[inline]
     fn subtract_d1(
         &self,
@@ -162,6 +173,26 @@ impl<S: MechanicalSystem, T: InterpolationTable, const K: usize> DiscreteLagrang
     fn subtract_d2d1(&self, node: usize, weight: f64, hessian: &[f64], kkt: &mut Kkt<S>) {
         self.for_each_second_derivative(node, weight, hessian, Slot::START, Slot::END, |row, col, value| {
             kkt.add_block(row, col, -value);
+        });
+    }
+
+    /// Subtracts this node's part of `h ∂f⁻/∂q₁ = Σⱼ wⱼ h g₁ (h ∂f/∂q g₂ + ∂f/∂v h g₂')`.
+    #[inline]
+    fn subtract_force_derivatives(
+        &self,
+        node: usize,
+        weight: f64,
+        derivatives: &ForceDerivatives<'_, S>,
+        kkt: &mut Kkt<S>,
+    ) {
+        let h = self.h;
+        derivatives.for_each_by_q(|row, col, value| {
+            let (of_row, of_col) = self.coefficients_of(node, row, col);
+            kkt.add_block(row, col, -(weight * h * h * of_row.start() * value * of_col.end()));
+        });
+        derivatives.for_each_by_v(|row, col, value| {
+            let (of_row, of_col) = self.coefficients_of(node, row, col);
+            kkt.add_block(row, col, -(weight * h * of_row.start() * value * of_col.end_rate()));
         });
     }
 

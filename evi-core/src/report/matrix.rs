@@ -74,10 +74,14 @@ fn cell(report: &SystemReport, row: usize, col: usize) -> Cell {
         kinds.max().unwrap_or(Cell::Zero)
     };
     let (hessian, jacobian) = (report.structure.hessian, report.structure.jacobian.q);
+    let forces = report.structure.forces;
     match (row < n, col < n) {
         (true, true) => {
             let both = [(row, col), (col, row)];
-            [hessian.qq, hessian.vq, hessian.vv].map(|block| largest(block, &both)).into_iter().max()
+            let of_lagrangian = [hessian.qq, hessian.vq, hessian.vv].map(|block| largest(block, &both));
+            // A force is no derivative of one function: its own derivatives are not symmetric.
+            let of_forces = [forces.q, forces.v].map(|block| largest(block, &[(row, col)]));
+            of_lagrangian.into_iter().chain(of_forces).max()
         }
         (true, false) => Some(largest(jacobian, &[(col - n, row)])),
         (false, true) => Some(largest(jacobian, &[(row - n, col)])),

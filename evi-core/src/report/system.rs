@@ -13,6 +13,12 @@ impl Display for SystemReport {
         if !self.parameters.is_empty() {
             writeln!(f, "  parameters   {}", List(|| self.parameters.iter(), LISTED_NAMES))?;
         }
+        if !self.inputs.is_empty() {
+            writeln!(f, "  inputs       {}", List(|| self.inputs.iter(), LISTED_NAMES))?;
+        }
+        if !self.observables.is_empty() {
+            writeln!(f, "  observed     {}", List(|| self.observables.iter(), LISTED_NAMES))?;
+        }
 
         writeln!(f, "\nEquations")?;
         let margin = self.equations.iter().map(|equation| equation.name.chars().count()).max().unwrap_or(0);

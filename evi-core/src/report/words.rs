@@ -66,14 +66,37 @@ pub(super) fn write_structure(report: &SystemReport, f: &mut Formatter<'_>) -> f
     )?;
     let at_rest = if structure.momentum_vanishes_at_rest { "zero" } else { "not zero" };
     writeln!(f, "  momentum     {at_rest} at rest")?;
-    let time = match (structure.lagrangian.on_t, structure.constraints.on_t) {
-        (false, false) => "appears nowhere",
-        (true, false) => "in the Lagrangian",
-        (false, true) => "in the constraints",
-        (true, true) => "in the Lagrangian and in the constraints",
-    };
-    writeln!(f, "  time         {time}")?;
+    let time = [
+        (structure.lagrangian.on_t, "in the Lagrangian"),
+        (structure.constraints.on_t, "in the constraints"),
+        (structure.forces.on.on_t, "in the forces"),
+    ];
+    let places = time.into_iter().filter(|(appears, _)| *appears).map(|(_, place)| place);
+    if structure.is_autonomous() {
+        writeln!(f, "  time         appears nowhere")?;
+    } else {
+        writeln!(f, "  time         {}", And(places))?;
+    }
+    write_forces(report, f)?;
     write_constraints(report, f)
+}
+
+/// Where forces act that are no derivatives of `L`, and what they depend on; nothing where there are none.
+fn write_forces(report: &SystemReport, f: &mut Formatter<'_>) -> fmt::Result {
+    let forces = &report.structure.forces;
+    if !forces.exist() {
+        return Ok(());
+    }
+    let names = || forces.forced.iter().map(|&i| report.coordinates[i]);
+    write!(f, "  forces       on {}", List(names, LISTED_NAMES))?;
+    let Dependence { on_q, on_v, on_t } = forces.on;
+    let variables = [(on_q, "q"), (on_v, "v"), (on_t, "t"), (forces.on_inputs, "inputs")];
+    let variables = variables.into_iter().filter(|(depends, _)| *depends).map(|(_, name)| name);
+    if variables.clone().next().is_none() {
+        writeln!(f, "; constant")
+    } else {
+        writeln!(f, "; vary with {}", And(variables))
+    }
 }
 
 fn write_constraints(report: &SystemReport, f: &mut Formatter<'_>) -> fmt::Result {
@@ -125,10 +148,18 @@ impl Display for InWords {
             Block::Constant => return f.write_str("constant"),
             Block::Varying(dependence) => dependence,
         };
-        f.write_str("varies with ")?;
         let variables = [(on_q, "q"), (on_v, "v"), (on_t, "t")].into_iter().filter(|(depends, _)| *depends);
-        for (position, (_, variable)) in variables.enumerate() {
-            write!(f, "{}{variable}", if position == 0 { "" } else { " and " })?;
+        write!(f, "varies with {}", And(variables.map(|(_, variable)| variable)))
+    }
+}
+
+/// Words joined by `and`.
+struct And<I>(I);
+
+impl<I: Iterator<Item = &'static str> + Clone> Display for And<I> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        for (position, word) in self.0.clone().enumerate() {
+            write!(f, "{}{word}", if position == 0 { "" } else { " and " })?;
         }
         Ok(())
     }

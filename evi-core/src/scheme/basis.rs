@@ -136,12 +136,13 @@ pub trait Interpolant<S: MechanicalSystem> {
     /// The coefficients at `K` nodes.
     type Table<const K: usize>: InterpolationTable;
 
-    /// The coefficients at the nodes of `quadrature` for steps of size `h`.
+    /// The coefficients at the nodes of `quadrature` for steps of size `h` of a scene with these constants.
     ///
     /// # Errors
     /// [`SchemeError`] for frequencies that are not numbers, resonant, or blind to the inertia of a coordinate.
     fn table<const K: usize>(
         &self,
+        constants: &S::PerConstant<f64>,
         quadrature: &Quadrature<K>,
         h: f64,
     ) -> Result<Self::Table<K>, SchemeError>;
@@ -158,6 +159,7 @@ impl<S: MechanicalSystem> Interpolant<S> for Linear {
 
     fn table<const K: usize>(
         &self,
+        _constants: &S::PerConstant<f64>,
         quadrature: &Quadrature<K>,
         _h: f64,
     ) -> Result<LinearTable<K>, SchemeError> {
@@ -188,6 +190,7 @@ impl<S: MechanicalSystem> Interpolant<S> for Frequency {
 
     fn table<const K: usize>(
         &self,
+        _constants: &S::PerConstant<f64>,
         quadrature: &Quadrature<K>,
         h: f64,
     ) -> Result<UniformTable<K>, SchemeError> {
@@ -217,6 +220,7 @@ where
 
     fn table<const K: usize>(
         &self,
+        _constants: &S::PerConstant<f64>,
         quadrature: &Quadrature<K>,
         h: f64,
     ) -> Result<CoordinateTable<N, K>, SchemeError> {
@@ -241,7 +245,7 @@ impl<const N: usize, const K: usize> InterpolationTable for CoordinateTable<N, K
 }
 
 /// The coefficients of one coordinate at every node, where they define a step.
-fn checked_coefficients<const K: usize>(
+pub(super) fn checked_coefficients<const K: usize>(
     frequency: Frequency,
     coordinate: usize,
     quadrature: &Quadrature<K>,

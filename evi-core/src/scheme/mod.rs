@@ -7,6 +7,7 @@ mod basis;
 mod frequency;
 mod nodal;
 mod quadrature;
+mod scene_frequencies;
 
 #[cfg(feature = "generic")]
 pub(crate) use basis::check_interpolant;
@@ -18,6 +19,7 @@ pub use frequency::Frequency;
 pub(crate) use nodal::LobattoNodes;
 pub use nodal::{MOST_INTERVALS, NodalCurves, NodalTable, NodalTables};
 pub use quadrature::{Quadrature, QuadratureError};
+pub use scene_frequencies::{SceneFrequencies, SceneTable};
 
 /// A scheme that does not define a step.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]

@@ -5,9 +5,11 @@
 //! types of its index sets; nothing here loops over nodes or iterates.
 
 mod classification;
+mod forces;
 mod report;
 
 pub use classification::{Block, ConstraintStructure, HessianBlocks, MassShape, Potential};
+pub use forces::{ForceStructure, HasFrequencies};
 pub use report::{Equation, Formula, KernelReport, SystemReport};
 
 use crate::array::Array;
@@ -29,6 +31,12 @@ pub trait MechanicalSystem: Sized {
     const CONSTRAINTS: &'static [&'static str];
     /// Names of the struct's fields that the equations use, in the order of [`parameters`](Self::parameters).
     const PARAMETERS: &'static [&'static str];
+    /// Number of inputs.
+    const N_INPUTS: usize = Self::INPUTS.len();
+    /// Names of the inputs: values that forces depend on and that the caller sets from step to step.
+    const INPUTS: &'static [&'static str] = &[];
+    /// Names of the observed quantities, in the order of [`observables`](Self::observables).
+    const OBSERVABLES: &'static [&'static str] = &[];
     /// What is zero, constant, or varying in the derivatives of `L` and `φ`, and what evaluating them costs.
     const STRUCTURE: Structure;
     /// The equations and what became of them, to print and read.
@@ -50,6 +58,12 @@ pub trait MechanicalSystem: Sized {
     type PerHessianEntry<X: Clone>: Array<X>;
     /// One value per varying entry of the Jacobian of `φ`.
     type PerJacobianEntry<X: Clone>: Array<X>;
+    /// One value per input.
+    type PerInput<X: Clone>: Array<X>;
+    /// One value per observed quantity.
+    type PerObservable<X: Clone>: Array<X>;
+    /// One value per varying entry of the derivatives of the forces.
+    type PerForceEntry<X: Clone>: Array<X>;
 
     /// Solver of the saddle-point systems of the scene, `(n + m) × (n + m)`.
     type KktFactors: Factorization<Self::PerUnknown<f64>, Self::PerUnknown<Self::PerUnknown<f64>>>;
@@ -111,6 +125,44 @@ pub trait MechanicalSystem: Sized {
         q: &Self::PerCoordinate<T>,
         v: &Self::PerCoordinate<T>,
     ) -> Self::PerConstraint<T>;
+
+    /// `f(t, q, v, u)`: the generalized forces that are no derivatives of `L`, so that
+    /// `d/dt ∂L/∂v − ∂L/∂q + Gᵀλ = f`. The sum of the items `force` and of `−∂D/∂v` for the item `dissipation`; zero
+    /// without such items.
+    #[inline]
+    fn forces<T: Scalar>(
+        _constants: &Self::PerConstant<T>,
+        _t: T,
+        _q: &Self::PerCoordinate<T>,
+        _v: &Self::PerCoordinate<T>,
+        _inputs: &Self::PerInput<T>,
+    ) -> Self::PerCoordinate<T> {
+        Array::from_fn(|_| T::from_f64(0.0))
+    }
+
+    /// `f(t, q, v, u)` and the varying entries of `∂f/∂q` and `∂f/∂v`, fused.
+    #[inline]
+    fn force_derivatives<T: Scalar>(
+        constants: &Self::PerConstant<T>,
+        t: T,
+        q: &Self::PerCoordinate<T>,
+        v: &Self::PerCoordinate<T>,
+        inputs: &Self::PerInput<T>,
+    ) -> (Self::PerCoordinate<T>, Self::PerForceEntry<T>) {
+        (Self::forces(constants, t, q, v, inputs), Array::from_fn(|_| T::from_f64(0.0)))
+    }
+
+    /// The quantities of the items `observe`.
+    #[inline]
+    fn observables<T: Scalar>(
+        _constants: &Self::PerConstant<T>,
+        _t: T,
+        _q: &Self::PerCoordinate<T>,
+        _v: &Self::PerCoordinate<T>,
+        _inputs: &Self::PerInput<T>,
+    ) -> Self::PerObservable<T> {
+        Array::from_fn(|_| T::from_f64(0.0))
+    }
 }
 
 /// First derivatives of a Lagrangian.
@@ -146,7 +198,9 @@ pub struct Structure {
     pub each_constraint: &'static [ConstraintStructure],
     /// Pairs of constraints that share a coordinate, `(smaller, larger)` index.
     pub constraint_graph: &'static [(usize, usize)],
-    /// Operations of each kernel.
+    /// Forces that are no derivatives of `L`.
+    pub forces: ForceStructure,
+    /// Operations of each kernel of `L` and `φ`.
     pub operations: KernelOperations,
 }
 
@@ -155,7 +209,7 @@ impl Structure {
     #[doc(hidden)]
     pub const UNKNOWN: Self = {
         const NOTHING: Dependence = Dependence { on_q: false, on_v: false, on_t: false };
-        const NONE: Operations = Operations { additions: 0, multiplications: 0, divisions: 0, functions: 0 };
+        const NONE: Operations = Operations::NONE;
         Self {
             hessian: HessianPattern { qq: &[], vq: &[], vv: &[], vt: &[] },
             jacobian: JacobianPattern { q: &[], t: &[] },
@@ -168,6 +222,7 @@ impl Structure {
             constraints: NOTHING,
             each_constraint: &[],
             constraint_graph: &[],
+            forces: ForceStructure::NONE,
             operations: KernelOperations {
                 constants: NONE,
                 lagrangian: NONE,
@@ -185,7 +240,7 @@ impl Structure {
         !self.mass.on_v
     }
 
-    /// Whether no second derivative of `L` couples two coordinates: every matrix of a step is diagonal.
+    /// Whether no second derivative of `L` couples two coordinates: every matrix of a step without other forces is diagonal.
     pub const fn is_uncoupled(&self) -> bool {
         is_diagonal(self.hessian.qq) && is_diagonal(self.hessian.vq) && is_diagonal(self.hessian.vv)
     }
@@ -210,9 +265,9 @@ impl Structure {
         false
     }
 
-    /// Whether neither `L` nor `φ` depends on time.
+    /// Whether neither `L` nor `φ` nor a force depends on time.
     pub const fn is_autonomous(&self) -> bool {
-        !(self.lagrangian.on_t || self.constraints.on_t)
+        !(self.lagrangian.on_t || self.constraints.on_t || self.forces.on.on_t)
     }
 
     /// Whether `L = ½ vᵀ M v − V(t, q)` with constant `M`.
@@ -359,6 +414,9 @@ pub struct Operations {
 }
 
 impl Operations {
+    /// Nothing to compute.
+    pub const NONE: Self = Self { additions: 0, multiplications: 0, divisions: 0, functions: 0 };
+
     /// All operations together.
     pub const fn total(&self) -> usize {
         self.additions + self.multiplications + self.divisions + self.functions

@@ -26,6 +26,10 @@ pub struct SystemReport {
     pub constraints: &'static [&'static str],
     /// Names of the parameters.
     pub parameters: &'static [&'static str],
+    /// Names of the inputs.
+    pub inputs: &'static [&'static str],
+    /// Names of the observed quantities.
+    pub observables: &'static [&'static str],
     /// The equations as the user wrote them, before simplification.
     pub equations: &'static [Equation],
     /// What the compiler knows about the equations.
@@ -42,6 +46,8 @@ impl SystemReport {
         coordinates: &[],
         constraints: &[],
         parameters: &[],
+        inputs: &[],
+        observables: &[],
         equations: &[],
         structure: Structure::UNKNOWN,
         kernels: &[],
@@ -53,9 +59,13 @@ impl SystemReport {
     }
 
     /// Unknowns that are left to Newton's method once the positions are eliminated: `m` where all second
-    /// derivatives of `L` are constant, `n + m` elsewhere.
+    /// derivatives of `L` are constant and no other force acts, `n + m` elsewhere.
     pub const fn n_unknowns_after_elimination(&self) -> usize {
-        if self.structure.blocks.are_constant() { self.constraints.len() } else { self.n_unknowns() }
+        if self.structure.blocks.are_constant() && !self.structure.forces.exist() {
+            self.constraints.len()
+        } else {
+            self.n_unknowns()
+        }
     }
 }
 

@@ -5,7 +5,7 @@ use quote::{quote, quote_spanned};
 
 use super::storage::{Sizes, associated_types, dense_solvers};
 use crate::diagnostics::{Diagnostics, Mistake};
-use crate::model::{constraint_names, coordinate_names};
+use crate::model::{constraint_names, coordinate_names, has_frequencies, input_names, observable_names};
 use crate::syntax::Declaration;
 
 /// The mistakes as compile errors, and a stub with the true sizes: code that uses the system type-checks as
@@ -19,7 +19,12 @@ pub(crate) fn fallback(declaration: &Declaration, diagnostics: &Diagnostics) -> 
         (&generics.impl_generics, &generics.type_generics, &generics.where_clause);
     let coordinates: Vec<String> = coordinate_names(declaration).iter().map(ToString::to_string).collect();
     let constraints = constraint_names(declaration);
+    let inputs: Vec<String> = input_names(declaration).map(ToString::to_string).collect();
+    let observables: Vec<String> = observable_names(declaration).map(ToString::to_string).collect();
     let sizes = Sizes {
+        n_inputs: inputs.len(),
+        n_observables: observables.len(),
+        n_force_entries: 0,
         n_coordinates: coordinates.len(),
         n_constraints: constraints.len(),
         n_parameters: 0,
@@ -30,6 +35,21 @@ pub(crate) fn fallback(declaration: &Declaration, diagnostics: &Diagnostics) -> 
     let types = associated_types(&sizes);
     let solvers = dense_solvers(sizes.n_coordinates, sizes.n_constraints);
     let (n_coordinates, n_constraints) = (sizes.n_coordinates, sizes.n_constraints);
+    let frequencies = has_frequencies(declaration).then(|| {
+        quote! {
+            #[automatically_derived]
+            #[allow(unused)]
+            impl #impl_generics ::evi_core::__private::HasFrequencies for #struct_name #type_generics
+            #where_clause
+            {
+                fn frequencies<__T: ::evi_core::__private::Scalar>(
+                    c: &Self::PerConstant<__T>,
+                ) -> Self::PerCoordinate<__T> {
+                    ::core::unimplemented!()
+                }
+            }
+        }
+    });
     quote! {
         #errors
         const _: () = {
@@ -41,6 +61,8 @@ pub(crate) fn fallback(declaration: &Declaration, diagnostics: &Diagnostics) -> 
                 const COORDINATES: &'static [&'static str] = &[#(#coordinates),*];
                 const CONSTRAINTS: &'static [&'static str] = &[#(#constraints),*];
                 const PARAMETERS: &'static [&'static str] = &[];
+                const INPUTS: &'static [&'static str] = &[#(#inputs),*];
+                const OBSERVABLES: &'static [&'static str] = &[#(#observables),*];
                 const STRUCTURE: ::evi_core::__private::Structure = ::evi_core::__private::Structure::UNKNOWN;
                 const REPORT: ::evi_core::__private::SystemReport =
                     ::evi_core::__private::SystemReport::UNKNOWN;
@@ -102,6 +124,8 @@ pub(crate) fn fallback(declaration: &Declaration, diagnostics: &Diagnostics) -> 
                     ::core::unimplemented!()
                 }
             }
+
+            #frequencies
 
             #[automatically_derived]
             #[allow(unused)]

@@ -7,6 +7,7 @@ use proc_macro2::{Group, Ident, Literal, Span, TokenStream, TokenTree};
 use quote::{ToTokens, format_ident, quote, quote_spanned};
 
 use super::pieces::in_pieces;
+use crate::expr::Dependence;
 use crate::model::{LagrangianSource, Model};
 use crate::syntax::{Declaration, Expression};
 
@@ -16,9 +17,10 @@ pub(super) fn generic_system(declaration: &Declaration, model: &Model) -> TokenS
     let (n_coordinates, n_constraints) = (model.coordinates.len(), model.constraints.len());
     let fields = || model.parameters.iter().map(|&field| &declaration.fields[field].name);
     let shared = model.source.lets.iter().map(|shared| &shared.name);
+    let inputs = &model.inputs;
     let rewriter = Rewriter {
         constants: model.named_constants.iter().map(TokenStream::to_string).collect(),
-        names: fields().chain(&model.coordinates).chain(shared).map(Ident::to_string).collect(),
+        names: fields().chain(&model.coordinates).chain(inputs).chain(shared).map(Ident::to_string).collect(),
     };
     let parameters: TokenStream = fields()
         .map(|field| (local_name(field), field))
@@ -38,14 +40,23 @@ pub(super) fn generic_system(declaration: &Declaration, model: &Model) -> TokenS
         .map(|(i, name)| (i, velocity_name(name)))
         .map(|(i, name)| quote!(let #name = __v[#i];))
         .collect();
-    let lets = |with_velocities: bool| -> TokenStream {
-        let usable = model.source.lets.iter().filter(|shared| with_velocities || !shared.has_velocity);
+    let lets = |is_usable: fn(Dependence) -> bool| -> TokenStream {
+        let usable = model.source.lets.iter().filter(|shared| is_usable(shared.on));
         usable
             .map(|shared| (local_name(&shared.name), rewriter.expression(&shared.value)))
             .map(|(name, value)| quote!(let #name = #value;))
             .collect()
     };
-    let (all_lets, position_lets) = (lets(true), lets(false));
+    let motion_lets = lets(|on| !on.on_inputs);
+    let position_lets = lets(|on| !on.on_inputs && !on.on_v);
+    let all_lets = lets(|_| true);
+    let forces = forces(
+        model,
+        &rewriter,
+        &quote!(#parameters #positions #velocities #motion_lets),
+        &quote!(#parameters #positions #velocities),
+        &all_lets,
+    );
     let lagrangian = match &model.source.lagrangian {
         LagrangianSource::Whole(lagrangian) => {
             let lagrangian = rewriter.expression(lagrangian);
@@ -74,7 +85,7 @@ pub(super) fn generic_system(declaration: &Declaration, model: &Model) -> TokenS
             }
 
             fn lagrangian<T: ::evi_core::__private::Scalar>(&self, t: T, __q: &[T], __v: &[T]) -> T {
-                #parameters #positions #velocities #all_lets
+                #parameters #positions #velocities #motion_lets
                 #lagrangian
             }
 
@@ -82,8 +93,68 @@ pub(super) fn generic_system(declaration: &Declaration, model: &Model) -> TokenS
                 #parameters #positions #position_lets
                 #(#residuals)*
             }
+
+            #forces
         }
     }
+}
+
+/// The methods for forces that are no derivatives of `L`, where the scene has some.
+fn forces(
+    model: &Model,
+    rewriter: &Rewriter,
+    motion: &TokenStream,
+    variables: &TokenStream,
+    lets: &TokenStream,
+) -> TokenStream {
+    let n_inputs = model.inputs.len();
+    let count = (n_inputs > 0).then(|| {
+        quote! {
+            fn n_inputs(&self) -> usize {
+                #n_inputs
+            }
+        }
+    });
+    let dissipation = model.source.dissipation.as_ref().map(|dissipation| {
+        let dissipation = rewriter.expression(dissipation);
+        quote! {
+            const HAS_DISSIPATION: bool = true;
+
+            fn dissipation<T: ::evi_core::__private::Scalar>(&self, t: T, __q: &[T], __v: &[T]) -> T {
+                #motion
+                (#dissipation)
+            }
+        }
+    });
+    let inputs: TokenStream = model
+        .inputs
+        .iter()
+        .enumerate()
+        .map(|(i, name)| (i, local_name(name)))
+        .map(|(i, name)| quote!(let #name = __u[#i];))
+        .collect();
+    let summands = model.source.forces.iter().map(|(coordinate, force)| {
+        let force = rewriter.expression(force);
+        quote!(__forces[#coordinate] = __forces[#coordinate] + (#force);)
+    });
+    let generalized = (!model.source.forces.is_empty()).then(|| {
+        quote! {
+            const HAS_FORCES: bool = true;
+
+            fn add_forces<T: ::evi_core::__private::Scalar>(
+                &self,
+                t: T,
+                __q: &[T],
+                __v: &[T],
+                __u: &[T],
+                __forces: &mut [T],
+            ) {
+                #variables #inputs #lets
+                #(#summands)*
+            }
+        }
+    });
+    quote!(#count #dissipation #generalized)
 }
 
 /// The variable for a name of the user. Not the name itself: a binding cannot have the name of a constant in scope, and

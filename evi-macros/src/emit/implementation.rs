@@ -4,11 +4,12 @@ use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 
 use super::elimination::elimination_type;
+use super::forces;
 use super::generic::generic_system;
 use super::kernel::Writer;
 use super::report::{report, source};
 use super::storage::{Sizes, associated_types};
-use crate::expr::{Dependence, Graph};
+use crate::expr::{Dependence, ExprId, Graph};
 use crate::model::{Model, WrittenEquation};
 use crate::schedule::{ConstantSlots, Operations, Program, Programs};
 use crate::structure::{
@@ -35,11 +36,19 @@ pub(crate) fn implementation(
         n_constants: programs.slots.len(),
         n_hessian_entries: programs.structure.hessian_entries.len(),
         n_jacobian_entries: programs.structure.jacobian_entries.len(),
+        n_inputs: model.inputs.len(),
+        n_observables: model.observables.len(),
+        n_force_entries: programs.structure.force_entries.len(),
     };
     let types = associated_types(&sizes);
     let (solver_types, solvers) = solvers(&sizes, &programs.structure);
     let fields: Vec<&Ident> = model.parameters.iter().map(|&field| &declaration.fields[field].name).collect();
     let kernels = Kernels { graph, model, slots: &programs.slots };
+    let frequencies = forces::frequencies(struct_name, &kernels, programs);
+    let optional = [
+        programs.forces.as_ref().map(|forces| kernels.forces(forces)),
+        programs.observables.as_ref().map(|observables| kernels.observables(observables)),
+    ];
     let kernels = [
         kernels.constants(&programs.constants),
         kernels.lagrangian(&programs.lagrangian),
@@ -49,7 +58,7 @@ pub(crate) fn implementation(
         kernels.constraint_derivatives(&programs.constraint_derivatives),
         kernels.constraint_curvature(&programs.constraint_curvature),
     ];
-    let kernels: TokenStream = kernels.into_iter().collect();
+    let kernels: TokenStream = kernels.into_iter().chain(optional.into_iter().flatten()).collect();
     let system = |report: TokenStream| {
         quote! {
             const _: () = {
@@ -72,6 +81,7 @@ pub(crate) fn implementation(
                     #kernels
                 }
 
+                #frequencies
                 #generic_system
             };
         }
@@ -119,10 +129,12 @@ fn names(declaration: &Declaration, model: &Model) -> TokenStream {
     let coordinates = model.coordinates.iter().map(text);
     let constraints = model.constraints.iter().map(|(name, _)| text(name));
     let parameters = model.parameters.iter().map(|&field| text(&declaration.fields[field].name));
+    let optional = forces::names(model);
     quote! {
         const COORDINATES: &'static [&'static str] = &[#(#coordinates),*];
         const CONSTRAINTS: &'static [&'static str] = &[#(#constraints),*];
         const PARAMETERS: &'static [&'static str] = &[#(#parameters),*];
+        #optional
     }
 }
 
@@ -143,6 +155,7 @@ fn structure(programs: &Programs) -> TokenStream {
         classification.constraint_graph.iter().map(|(first, second)| quote!((#first, #second)));
     let (mass, lagrangian) = (dependence(known.mass), dependence(known.lagrangian));
     let constraint_dependence = dependence(known.constraints);
+    let forces = forces::structure(programs);
     let constants = operations(programs.constants.operations);
     let lagrangian_operations = operations(programs.lagrangian.operations);
     let lagrangian_gradient = operations(programs.lagrangian_gradient.operations);
@@ -168,6 +181,7 @@ fn structure(programs: &Programs) -> TokenStream {
             constraints: #constraint_dependence,
             each_constraint: &[#(#each_constraint),*],
             constraint_graph: &[#(#constraint_graph),*],
+            forces: #forces,
             operations: ::evi_core::__private::KernelOperations {
                 constants: #constants,
                 lagrangian: #lagrangian_operations,
@@ -181,7 +195,7 @@ fn structure(programs: &Programs) -> TokenStream {
     }
 }
 
-fn entries(entries: &[Entry]) -> TokenStream {
+pub(super) fn entries(entries: &[Entry]) -> TokenStream {
     let entries = entries.iter().map(|&Entry { row, col, value }| {
         let value = match value {
             EntryValue::Constant(slot) => quote!(Constant(#slot)),
@@ -192,7 +206,7 @@ fn entries(entries: &[Entry]) -> TokenStream {
     quote!(&[#(#entries),*])
 }
 
-fn dependence(Dependence { on_q, on_v, on_t }: Dependence) -> TokenStream {
+pub(super) fn dependence(Dependence { on_q, on_v, on_t, .. }: Dependence) -> TokenStream {
     quote!(::evi_core::__private::Dependence { on_q: #on_q, on_v: #on_v, on_t: #on_t })
 }
 
@@ -248,9 +262,9 @@ pub(super) fn operations(operations: Operations) -> TokenStream {
 }
 
 /// The functions of the trait.
-struct Kernels<'a> {
+pub(super) struct Kernels<'a> {
     graph: &'a Graph,
-    model: &'a Model,
+    pub(super) model: &'a Model,
     slots: &'a ConstantSlots,
 }
 
@@ -358,6 +372,43 @@ impl Kernels<'_> {
             inputs: quote!(c: &[T; #n_constants], t: T, q: &[T; #n_coordinates] #declared),
             arguments: quote!(c, t, q #passed),
         }
+    }
+
+    /// A kernel that takes the inputs `u`, too.
+    pub(super) fn function_with_inputs(
+        &self,
+        name: &str,
+        returned: TokenStream,
+        body: TokenStream,
+    ) -> TokenStream {
+        let name = quote::format_ident!("{name}");
+        quote! {
+            #[inline]
+            fn #name<T: ::evi_core::__private::Scalar>(
+                c: &Self::PerConstant<T>,
+                t: T,
+                q: &Self::PerCoordinate<T>,
+                v: &Self::PerCoordinate<T>,
+                u: &Self::PerInput<T>,
+            ) -> #returned {
+                #body
+            }
+        }
+    }
+
+    pub(super) fn writer_with_inputs(&self) -> Writer<'_> {
+        let n_inputs = self.model.inputs.len();
+        let Writer { inputs, arguments, .. } = self.writer(true);
+        Writer {
+            inputs: quote!(#inputs, u: &[T; #n_inputs]),
+            arguments: quote!(#arguments, u),
+            ..self.writer(true)
+        }
+    }
+
+    /// A value that the constants `c` hold, or a number.
+    pub(super) fn constant(&self, id: ExprId) -> TokenStream {
+        self.writer(true).input(id).expect("a constant is a number or has a slot")
     }
 
     fn gradient(&self, outputs: &[TokenStream]) -> TokenStream {

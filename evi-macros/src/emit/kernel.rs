@@ -142,7 +142,7 @@ impl Writer<'_> {
     }
 
     /// A node that the function is given.
-    fn input(&self, id: ExprId) -> Option<TokenStream> {
+    pub(super) fn input(&self, id: ExprId) -> Option<TokenStream> {
         if let Some(slot) = self.slots.get(id) {
             return Some(quote!(c[#slot]));
         }
@@ -151,6 +151,7 @@ impl Writer<'_> {
             Node::Symbol(Symbol::Coordinate(index)) => Some(quote!(q[#index])),
             Node::Symbol(Symbol::Velocity(index)) => Some(quote!(v[#index])),
             Node::Symbol(Symbol::Time) => Some(quote!(t)),
+            Node::Symbol(Symbol::Input(index)) => Some(quote!(u[#index])),
             Node::Symbol(Symbol::Parameter(field)) => {
                 let index = self.parameters.iter().position(|&parameter| parameter == field);
                 let index = index.expect("a parameter in the graph is a parameter of the model");

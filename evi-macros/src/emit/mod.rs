@@ -4,6 +4,7 @@
 
 mod elimination;
 mod fallback;
+mod forces;
 mod generic;
 mod implementation;
 mod kernel;

@@ -35,6 +35,8 @@ pub(super) fn report(
             coordinates: Self::COORDINATES,
             constraints: Self::CONSTRAINTS,
             parameters: Self::PARAMETERS,
+            inputs: Self::INPUTS,
+            observables: Self::OBSERVABLES,
             equations: &[#(#equations),*],
             structure: Self::STRUCTURE,
             kernels: &[#(#kernels),*],

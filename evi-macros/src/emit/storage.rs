@@ -11,6 +11,9 @@ pub(super) struct Sizes {
     pub(super) n_constants: usize,
     pub(super) n_hessian_entries: usize,
     pub(super) n_jacobian_entries: usize,
+    pub(super) n_inputs: usize,
+    pub(super) n_observables: usize,
+    pub(super) n_force_entries: usize,
 }
 
 /// The associated types of `MechanicalSystem`.
@@ -22,6 +25,9 @@ pub(super) fn associated_types(sizes: &Sizes) -> TokenStream {
         n_constants,
         n_hessian_entries,
         n_jacobian_entries,
+        n_inputs,
+        n_observables,
+        n_force_entries,
     } = *sizes;
     let n_unknowns = n_coordinates + n_constraints;
     quote! {
@@ -32,6 +38,9 @@ pub(super) fn associated_types(sizes: &Sizes) -> TokenStream {
         type PerConstant<X: ::core::clone::Clone> = [X; #n_constants];
         type PerHessianEntry<X: ::core::clone::Clone> = [X; #n_hessian_entries];
         type PerJacobianEntry<X: ::core::clone::Clone> = [X; #n_jacobian_entries];
+        type PerInput<X: ::core::clone::Clone> = [X; #n_inputs];
+        type PerObservable<X: ::core::clone::Clone> = [X; #n_observables];
+        type PerForceEntry<X: ::core::clone::Clone> = [X; #n_force_entries];
         type DenseKktFactors = ::evi_core::__private::DenseLu<#n_unknowns>;
     }
 }

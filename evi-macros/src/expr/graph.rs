@@ -45,6 +45,8 @@ pub(crate) enum Symbol {
     Velocity(usize),
     /// Time.
     Time,
+    /// Input that the caller sets at every step, by its index.
+    Input(usize),
 }
 
 /// The kinds of variables below a node.
@@ -53,11 +55,17 @@ pub(crate) struct Dependence {
     pub(crate) on_q: bool,
     pub(crate) on_v: bool,
     pub(crate) on_t: bool,
+    pub(crate) on_inputs: bool,
 }
 
 impl Dependence {
     pub(crate) fn union(self, other: Self) -> Self {
-        Self { on_q: self.on_q || other.on_q, on_v: self.on_v || other.on_v, on_t: self.on_t || other.on_t }
+        Self {
+            on_q: self.on_q || other.on_q,
+            on_v: self.on_v || other.on_v,
+            on_t: self.on_t || other.on_t,
+            on_inputs: self.on_inputs || other.on_inputs,
+        }
     }
 
     /// Whether only numbers and parameters stand below.
@@ -209,6 +217,7 @@ impl Graph {
             Node::Symbol(Symbol::Coordinate(_)) => Dependence { on_q: true, ..Dependence::default() },
             Node::Symbol(Symbol::Velocity(_)) => Dependence { on_v: true, ..Dependence::default() },
             Node::Symbol(Symbol::Time) => Dependence { on_t: true, ..Dependence::default() },
+            Node::Symbol(Symbol::Input(_)) => Dependence { on_inputs: true, ..Dependence::default() },
             Node::Number(_) | Node::Symbol(_) => Dependence::default(),
             Node::Unary(_, operand) | Node::Power(operand, _) => self.dependence(operand),
             Node::Binary(_, first, second) => self.dependence(first).union(self.dependence(second)),

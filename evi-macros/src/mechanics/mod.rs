@@ -5,7 +5,7 @@
 
 use crate::differentiate::{partial, rate};
 use crate::expr::{ExprId, Graph, Symbol, substitute};
-use crate::model::Model;
+use crate::model::{Forces, Model};
 use crate::simplify::Simplifier;
 
 /// The Lagrangian, the constraints, and their derivatives.
@@ -31,8 +31,25 @@ pub(crate) struct Equations {
     pub(crate) jacobian_t: Vec<Partial>,
     /// `d²φ/dt²` without its acceleration term.
     pub(crate) curvature: Vec<ExprId>,
+    /// What is no derivative of `L`.
+    pub(crate) forces: ForceEquations,
+    /// Frequency of every coordinate; empty where none has one.
+    pub(crate) frequencies: Vec<ExprId>,
+    /// Quantities to record.
+    pub(crate) observables: Vec<ExprId>,
     /// `∂L/∂q` and `∂L/∂v` at `v = 0`; no kernel evaluates them.
     pub(crate) at_rest: AtRest,
+}
+
+/// Forces beside those of `L`, and their derivatives; all empty where every force vanishes.
+#[derive(Default)]
+pub(crate) struct ForceEquations {
+    /// `f = generalized forces − ∂D/∂v`, one per coordinate.
+    pub(crate) values: Vec<ExprId>,
+    /// `∂f/∂q`.
+    pub(crate) by_q: Vec<Partial>,
+    /// `∂f/∂v`.
+    pub(crate) by_v: Vec<Partial>,
 }
 
 /// First derivatives of `L` at `v = 0`.
@@ -72,8 +89,14 @@ pub(crate) fn differentiate_equations(graph: &mut Graph, model: &Model) -> Equat
         force,
         momentum,
         constraints,
+        forces: ForceEquations::default(),
+        frequencies: Vec::new(),
+        observables: Vec::new(),
         at_rest: AtRest { force: Vec::new(), momentum: Vec::new() },
     };
+    equations.forces = calculus.forces(&model.forces, n);
+    equations.frequencies = calculus.frequencies(&model.frequencies, n);
+    equations.observables = model.observables.iter().map(|(_, root)| calculus.simplified(*root)).collect();
     // Last: nodes that are read for the structure only do not change the order of those that are computed.
     equations.at_rest =
         AtRest { force: calculus.at_rest(&equations.force), momentum: calculus.at_rest(&equations.momentum) };
@@ -121,6 +144,52 @@ impl Calculus<'_> {
             }
         }
         partials
+    }
+
+    /// The sum of the generalized forces and that of the dissipation, with its derivatives.
+    fn forces(&mut self, forces: &Forces, n: usize) -> ForceEquations {
+        let mut values: Vec<Option<ExprId>> = vec![None; n];
+        for &(i, _, root) in &forces.generalized {
+            values[i] = Some(root);
+        }
+        if let Some((_, dissipation)) = forces.dissipation {
+            for (i, value) in values.iter_mut().enumerate() {
+                if let Some(slope) = partial(self.graph, dissipation, Symbol::Velocity(i)) {
+                    *value = Some(match *value {
+                        Some(force) => self.graph.sub(force, slope),
+                        None => self.graph.neg(slope),
+                    });
+                }
+            }
+        }
+        let mut nonzero = |value: ExprId| {
+            let value = self.simplified(value);
+            (self.graph.as_number(value) != Some(0.0)).then_some(value)
+        };
+        let values: Vec<Option<ExprId>> =
+            values.into_iter().map(|value| value.and_then(&mut nonzero)).collect();
+        if values.iter().all(Option::is_none) {
+            return ForceEquations::default();
+        }
+        let zero = self.graph.number(0.0);
+        let values: Vec<ExprId> = values.into_iter().map(|value| value.unwrap_or(zero)).collect();
+        ForceEquations {
+            by_q: self.jacobian(&values, n, Symbol::Coordinate, |_, _| true),
+            by_v: self.jacobian(&values, n, Symbol::Velocity, |_, _| true),
+            values,
+        }
+    }
+
+    /// One frequency per coordinate, zero where none is given; empty if all are missing.
+    fn frequencies(&mut self, frequencies: &[(usize, ExprId)], n: usize) -> Vec<ExprId> {
+        if frequencies.is_empty() {
+            return Vec::new();
+        }
+        let mut values = vec![self.graph.number(0.0); n];
+        for &(i, root) in frequencies {
+            values[i] = self.simplified(root);
+        }
+        values
     }
 
     /// The roots at `v = 0`.

@@ -4,33 +4,60 @@ use std::collections::{HashMap, HashSet};
 
 use proc_macro2::{Ident, Span};
 
-use super::coordinate_names;
+use super::{coordinate_names, input_names};
 use crate::diagnostics::Diagnostics;
 use crate::expr::{ExprId, Graph, Symbol};
-use crate::syntax::{Declaration, Expression, Item};
+use crate::syntax::{Declaration, Expression, Item, Labelled};
 
 /// Reports names that are reserved or given twice.
 pub(super) fn names(declaration: &Declaration, diagnostics: &mut Diagnostics) {
-    let fields = declaration.fields.iter().map(|field| ("field", &field.name));
-    let coordinates = coordinate_names(declaration).iter().map(|name| ("coordinate", name));
+    let fields = declaration.fields.iter().map(|field| ("a field", &field.name));
+    let coordinates = coordinate_names(declaration).iter().map(|name| ("a coordinate", name));
+    let inputs = input_names(declaration).map(|name| ("an input", name));
     let lets = declaration.items.iter().filter_map(|item| match item {
-        Item::Let(definition) => Some(("shared expression", &definition.name)),
+        Item::Let(definition) => Some(("a shared expression", &definition.name)),
         _ => None,
     });
     let mut owners: HashMap<String, &str> = HashMap::new();
-    for (kind, name) in fields.chain(coordinates).chain(lets) {
+    for (kind, name) in fields.chain(coordinates).chain(inputs).chain(lets) {
         if reserved(kind, name, diagnostics) {
             continue;
         }
         if let Some(owner) = owners.insert(name.to_string(), kind) {
-            diagnostics.report(name.span(), format!("the name `{name}` is taken by a {owner}"));
+            diagnostics.report(name.span(), format!("the name `{name}` is taken by {owner}"));
         }
     }
-    let mut constraints: HashSet<String> = HashSet::new();
-    for name in super::constraints(declaration).filter_map(|constraint| constraint.name.as_ref()) {
-        if !constraints.insert(name.to_string()) {
-            let message = format!("there is a constraint `{name}` already: each needs a name of its own");
-            diagnostics.report(name.span(), message);
+    let constraints = super::constraints(declaration).filter_map(|constraint| constraint.name.as_ref());
+    distinct(constraints, diagnostics, |name| {
+        format!("there is a constraint `{name}` already: each needs a name of its own")
+    });
+    distinct(super::observable_names(declaration), diagnostics, |name| {
+        format!("there is an observed quantity `{name}` already: each needs a name of its own")
+    });
+    let forces = declaration.items.iter().filter_map(|item| match item {
+        Item::Force(Labelled { names, .. }) => names.first(),
+        _ => None,
+    });
+    distinct(forces, diagnostics, |name| {
+        format!("there is a force on `{name}` already: write one force, the sum of both")
+    });
+    let frequencies = declaration.items.iter().filter_map(|item| match item {
+        Item::Frequency(Labelled { names, .. }) => Some(names),
+        _ => None,
+    });
+    distinct(frequencies.flatten(), diagnostics, |name| format!("`{name}` has a frequency already"));
+}
+
+/// Reports every name that has stood before.
+fn distinct<'n>(
+    names: impl Iterator<Item = &'n Ident>,
+    diagnostics: &mut Diagnostics,
+    message: impl Fn(&Ident) -> String,
+) {
+    let mut known: HashSet<String> = HashSet::new();
+    for name in names {
+        if !known.insert(name.to_string()) {
+            diagnostics.report(name.span(), message(name));
         }
     }
 }
@@ -42,7 +69,7 @@ pub(super) fn reserved(kind: &str, name: &Ident, diagnostics: &mut Diagnostics) 
         "der" => "the time derivative",
         _ => return false,
     };
-    diagnostics.report(name.span(), format!("`{name}` is {meaning}: a {kind} needs another name"));
+    diagnostics.report(name.span(), format!("`{name}` is {meaning}: {kind} needs another name"));
     true
 }
 
@@ -71,6 +98,7 @@ pub(super) fn items(declaration: &Declaration, diagnostics: &mut Diagnostics) {
         |item| if let Item::Potential { keyword, .. } = item { Some(keyword) } else { None },
         diagnostics,
     );
+    only(|item| if let Item::Dissipation { keyword, .. } = item { Some(keyword) } else { None }, diagnostics);
     if let (Some(_), Some(energy), _) | (Some(_), None, Some(energy)) = (lagrangian, kinetic, potential) {
         let message =
             "the Lagrangian is given twice: write either `lagrangian = ..` or `kinetic = .., potential = ..`";
@@ -137,5 +165,34 @@ pub(super) fn constraint_moves_with_coordinates(
 ) {
     if !graph.dependence(residual).on_q {
         diagnostics.report(name.span(), format!("constraint `{name}` contains no coordinate"));
+    }
+}
+
+/// Reports a dissipation that no motion changes.
+pub(super) fn dissipation_has_velocities(
+    keyword: &Ident,
+    dissipation: ExprId,
+    graph: &Graph,
+    diagnostics: &mut Diagnostics,
+) {
+    if !graph.dependence(dissipation).on_v {
+        let message = "the dissipation contains no `der(..)`: its force −∂D/∂(der q) vanishes";
+        diagnostics.report(keyword.span(), message);
+    }
+}
+
+/// Reports inputs that stand in none of the equations that may name them.
+pub(super) fn inputs_are_used(
+    declaration: &Declaration,
+    equations: &[ExprId],
+    graph: &Graph,
+    diagnostics: &mut Diagnostics,
+) {
+    let symbols = graph.symbols(equations);
+    for (index, input) in input_names(declaration).enumerate() {
+        if !symbols.contains(&Symbol::Input(index)) {
+            let message = format!("input `{input}` is named by no force and no observed quantity");
+            diagnostics.report(input.span(), message);
+        }
     }
 }

@@ -4,7 +4,9 @@
 //! giving up.
 
 mod check;
+mod found;
 mod resolve;
+mod variables;
 mod written;
 
 pub(crate) use written::{Formula, WrittenEquation, written};
@@ -12,8 +14,9 @@ pub(crate) use written::{Formula, WrittenEquation, written};
 use proc_macro2::{Ident, TokenStream};
 
 use crate::diagnostics::Diagnostics;
-use crate::expr::{ExprId, Graph, Symbol};
-use crate::syntax::{Constraint, Coordinates, Declaration, Expression, Item};
+use crate::expr::{Dependence, ExprId, Graph};
+use crate::syntax::{Constraint, Coordinates, Declaration, Expression, Item, Labelled};
+use found::Found;
 use resolve::Scope;
 
 /// A Lagrangian system in the graph.
@@ -29,8 +32,25 @@ pub(crate) struct Model {
     pub(crate) energies: Vec<Energy>,
     /// `φ = LHS − RHS`, with their names.
     pub(crate) constraints: Vec<(Ident, ExprId)>,
+    /// What the caller sets at every step.
+    pub(crate) inputs: Vec<Ident>,
+    /// What is no derivative of `L`.
+    pub(crate) forces: Forces,
+    /// Frequencies of the interpolating curves, by coordinate.
+    pub(crate) frequencies: Vec<(usize, ExprId)>,
+    /// Quantities to record, with their names.
+    pub(crate) observables: Vec<(Ident, ExprId)>,
     /// The user's expressions, for the copy that is generic over the scalar.
     pub(crate) source: Source,
+}
+
+/// Forces beside those of `L`.
+#[derive(Default)]
+pub(crate) struct Forces {
+    /// Rayleigh's function `D`, with its keyword: the force is `−∂D/∂v`.
+    pub(crate) dissipation: Option<(Ident, ExprId)>,
+    /// Generalized forces, by coordinate, with the name at which the user gives them.
+    pub(crate) generalized: Vec<(usize, Ident, ExprId)>,
 }
 
 /// An energy as an item of its own.
@@ -46,6 +66,9 @@ pub(crate) struct Source {
     pub(crate) lagrangian: LagrangianSource,
     /// Left and right sides.
     pub(crate) constraints: Vec<(Expression, Expression)>,
+    pub(crate) dissipation: Option<Expression>,
+    /// By coordinate.
+    pub(crate) forces: Vec<(usize, Expression)>,
 }
 
 /// A shared subexpression.
@@ -53,8 +76,8 @@ pub(crate) struct SourceLet {
     pub(crate) name: Ident,
     pub(crate) value: Expression,
     pub(crate) root: ExprId,
-    /// Whether it depends on velocities, and so has no place among the constraints.
-    pub(crate) has_velocity: bool,
+    /// What it depends on: with velocities it has no place among the constraints, with inputs only among the forces.
+    pub(crate) on: Dependence,
 }
 
 /// How the user wrote the Lagrangian.
@@ -78,6 +101,28 @@ pub(crate) fn coordinate_names(declaration: &Declaration) -> &[Ident] {
 pub(crate) fn constraint_names(declaration: &Declaration) -> Vec<String> {
     let name = |constraint: &Constraint| constraint.name.as_ref().map_or_else(String::new, Ident::to_string);
     constraints(declaration).map(name).collect()
+}
+
+/// The inputs in the order of their declaration, right or wrong.
+pub(crate) fn input_names(declaration: &Declaration) -> impl Iterator<Item = &Ident> {
+    let names = declaration.items.iter().filter_map(|item| match item {
+        Item::Inputs(inputs) => Some(&inputs.names),
+        _ => None,
+    });
+    names.flatten()
+}
+
+/// The observed quantities in the order of their declaration, right or wrong.
+pub(crate) fn observable_names(declaration: &Declaration) -> impl Iterator<Item = &Ident> {
+    declaration.items.iter().filter_map(|item| match item {
+        Item::Observe(Labelled { names, .. }) => names.first(),
+        _ => None,
+    })
+}
+
+/// Whether some coordinate has a frequency, right or wrong.
+pub(crate) fn has_frequencies(declaration: &Declaration) -> bool {
+    declaration.items.iter().any(|item| matches!(item, Item::Frequency(_)))
 }
 
 fn coordinates(declaration: &Declaration) -> Option<&Coordinates> {
@@ -106,68 +151,23 @@ pub(crate) fn resolve(
     check::names(declaration, diagnostics);
     check::items(declaration, diagnostics);
     let mut scope = Scope::new(declaration);
-    let mut lets = Vec::new();
-    let (mut whole, mut kinetic, mut potential) = (None, None, None);
-    let (mut energies, mut constraints) = (Vec::new(), Vec::new());
+    let mut found = Found::default();
     for item in &declaration.items {
-        match item {
-            Item::Coordinates(_) | Item::Unknown => {}
-            Item::Lagrangian { keyword, value } => {
-                let equation = scope.equation("the Lagrangian", value.as_ref(), graph, diagnostics);
-                energies.extend(Energy::of(keyword, &equation));
-                whole = whole.or(equation);
-            }
-            Item::Kinetic { keyword, value } => {
-                let equation = scope.equation("the kinetic energy", value.as_ref(), graph, diagnostics);
-                energies.extend(Energy::of(keyword, &equation));
-                kinetic = kinetic.or(equation);
-            }
-            Item::Potential { keyword, value } => {
-                let equation = scope.equation("the potential", value.as_ref(), graph, diagnostics);
-                energies.extend(Energy::of(keyword, &equation));
-                potential = potential.or(equation);
-            }
-            Item::Let(definition) => {
-                lets.extend(scope.shared(definition, graph, diagnostics));
-            }
-            Item::Constraint(constraint) => {
-                constraints.extend(scope.constraint(constraint, graph, diagnostics));
-            }
-        }
+        found.add(item, &mut scope, graph, diagnostics);
     }
-    check::every_coordinate_has_inertia(declaration, &kinetic, &whole, graph, diagnostics);
-    for (name, residual, _) in &constraints {
+    check::every_coordinate_has_inertia(declaration, &found.kinetic, &found.whole, graph, diagnostics);
+    for (name, residual, _) in &found.constraints {
         check::constraint_moves_with_coordinates(name, *residual, graph, diagnostics);
+    }
+    if let Some((keyword, dissipation, _)) = &found.dissipation {
+        check::dissipation_has_velocities(keyword, *dissipation, graph, diagnostics);
+    }
+    if diagnostics.is_empty() {
+        // Elsewhere, what names the input may be what is mistaken.
+        check::inputs_are_used(declaration, &found.roots_with_inputs(), graph, diagnostics);
     }
     if !diagnostics.is_empty() {
         return None;
     }
-    energies.sort_by_key(|energy| energy.keyword == "potential");
-    let (lagrangian, source) = match (whole, kinetic, potential) {
-        (Some((value, source)), None, None) => (value, LagrangianSource::Whole(source)),
-        (None, Some((kinetic, kinetic_source)), Some((potential, potential_source))) => (
-            graph.sub(kinetic, potential),
-            LagrangianSource::Difference { kinetic: kinetic_source, potential: potential_source },
-        ),
-        _ => return None,
-    };
-    let roots: Vec<ExprId> =
-        std::iter::once(lagrangian).chain(constraints.iter().map(|(_, residual, _)| *residual)).collect();
-    let parameters = graph.symbols(&roots).into_iter().filter_map(|symbol| match symbol {
-        Symbol::Parameter(field) => Some(field),
-        _ => None,
-    });
-    Some(Model {
-        coordinates: coordinate_names(declaration).to_vec(),
-        parameters: parameters.collect(),
-        named_constants: scope.into_named_constants(),
-        lagrangian,
-        energies,
-        source: Source {
-            lets,
-            lagrangian: source,
-            constraints: constraints.iter().map(|(_, _, sides)| sides.clone()).collect(),
-        },
-        constraints: constraints.into_iter().map(|(name, residual, _)| (name, residual)).collect(),
-    })
+    found.into_model(declaration, scope.into_named_constants(), graph)
 }

@@ -4,7 +4,8 @@ use std::collections::HashMap;
 
 use proc_macro2::{Ident, Span, TokenStream};
 
-use super::{SourceLet, check, coordinate_names, coordinates};
+use super::variables::Variables;
+use super::{SourceLet, check, coordinate_names, coordinates, input_names};
 use crate::diagnostics::{Diagnostics, suggestion};
 use crate::expr::{ExprId, Graph, Symbol};
 use crate::syntax::{Constraint, Declaration, Expression, Field, Item, Let, Resolved, Resolver, lower};
@@ -15,7 +16,8 @@ pub(super) struct Scope<'a> {
     /// Fields of another type than f64 that have been reported.
     reported_fields: Vec<usize>,
     coordinates: Vec<String>,
-    /// Whether these are all coordinates; otherwise a mistake has been reported there, and any name may be
+    inputs: Vec<String>,
+    /// Whether all coordinates are known; otherwise a mistake has been reported there, and any name may be
     /// one.
     has_all_coordinates: bool,
     /// Shared subexpressions so far; `None` where the definition is mistaken.
@@ -27,7 +29,7 @@ pub(super) struct Scope<'a> {
     named_constants: Vec<(String, TokenStream)>,
     /// What is being resolved, for messages.
     context: String,
-    in_constraint: bool,
+    variables: Variables,
 }
 
 impl<'a> Scope<'a> {
@@ -37,32 +39,35 @@ impl<'a> Scope<'a> {
             _ => None,
         });
         let names = coordinate_names(declaration);
+        let inputs: Vec<String> = input_names(declaration).map(Ident::to_string).collect();
         let is_complete = coordinates(declaration).is_some_and(|coordinates| coordinates.is_complete);
         Self {
             fields: &declaration.fields,
             reported_fields: Vec::new(),
             coordinates: names.iter().map(Ident::to_string).collect(),
+            inputs,
             has_all_coordinates: is_complete && !names.is_empty(),
             lets: HashMap::new(),
             all_lets: all_lets.collect(),
             locals: Vec::new(),
             named_constants: Vec::new(),
             context: String::new(),
-            in_constraint: false,
+            variables: Variables::All,
         }
     }
 
-    /// The node of an expression of the Lagrangian, with its source.
+    /// The node of an expression in the given variables, with its source.
     pub(super) fn equation(
         &mut self,
         context: &str,
+        variables: Variables,
         value: Option<&Expression>,
         graph: &mut Graph,
         diagnostics: &mut Diagnostics,
     ) -> Option<(ExprId, Expression)> {
         let value = value?;
         self.context = context.to_owned();
-        self.in_constraint = false;
+        self.variables = variables;
         Some((lower(value, graph, self, diagnostics)?, value.clone()))
     }
 
@@ -74,11 +79,12 @@ impl<'a> Scope<'a> {
         diagnostics: &mut Diagnostics,
     ) -> Option<SourceLet> {
         let name = definition.name.to_string();
-        let resolved = self.equation(&let_context(&name), definition.value.as_ref(), graph, diagnostics);
+        let value = definition.value.as_ref();
+        let resolved = self.equation(&let_context(&name), Variables::All, value, graph, diagnostics);
         self.lets.insert(name, resolved.as_ref().map(|(value, _)| *value));
         let (value, source) = resolved?;
-        let has_velocity = graph.dependence(value).on_v;
-        Some(SourceLet { name: definition.name.clone(), value: source, root: value, has_velocity })
+        let on = graph.dependence(value);
+        Some(SourceLet { name: definition.name.clone(), value: source, root: value, on })
     }
 
     /// The residual `LHS − RHS` of a constraint, with its sides.
@@ -90,7 +96,7 @@ impl<'a> Scope<'a> {
     ) -> Option<(Ident, ExprId, (Expression, Expression))> {
         let name = constraint.name.as_ref()?;
         self.context = format!("constraint `{name}`");
-        self.in_constraint = true;
+        self.variables = Variables::OfPlace;
         // Both sides before either is given up, so that the mistakes of both are reported.
         let mut side = |side: &Option<Expression>| {
             let expression = side.as_ref()?;
@@ -100,6 +106,61 @@ impl<'a> Scope<'a> {
         let ((left_value, left), (right_value, right)) = (left?, right?);
         let residual = graph.sub(left_value, right_value);
         Some((name.clone(), residual, (left, right)))
+    }
+
+    /// The index of the coordinate that an item stands for.
+    pub(super) fn coordinate(
+        &self,
+        name: &Ident,
+        item: &str,
+        diagnostics: &mut Diagnostics,
+    ) -> Option<usize> {
+        let text = name.to_string();
+        let index = self.coordinates.iter().position(|coordinate| *coordinate == text);
+        if index.is_some() || !self.has_all_coordinates {
+            return index;
+        }
+        let message = match self.other_kind(&text) {
+            Some(kind) => format!("{item} belongs to a coordinate, `{text}` is {kind}"),
+            None => {
+                let similar = suggestion(&text, self.coordinates.iter().map(String::as_str));
+                format!("unknown coordinate `{text}`{similar}")
+            }
+        };
+        diagnostics.report(name.span(), format!("{message}\ncoordinates: {}", self.coordinates.join(", ")));
+        None
+    }
+
+    /// What a name is that is no coordinate.
+    fn other_kind(&self, text: &str) -> Option<&'static str> {
+        let is_local = self.locals.iter().flatten().any(|(local, _)| local == text);
+        if is_local || self.all_lets.iter().any(|name| name == text) {
+            Some("a shared expression")
+        } else if self.fields.iter().any(|field| field.name == text) {
+            Some("a parameter")
+        } else if self.inputs.iter().any(|input| input == text) {
+            Some("an input")
+        } else {
+            (text == "t").then_some("the time")
+        }
+    }
+
+    /// The node of a coordinate, the time or an input, where it may stand.
+    fn variable(
+        &self,
+        graph: &mut Graph,
+        name: &Ident,
+        (what, symbol): (&str, Symbol),
+        diagnostics: &mut Diagnostics,
+    ) -> Resolved {
+        let node = graph.symbol(symbol);
+        match self.variables.refuse_symbol(&name.to_string(), what, graph.dependence(node)) {
+            Some(message) => {
+                diagnostics.report(name.span(), message);
+                Resolved::Mistaken
+            }
+            None => Resolved::Value(node),
+        }
     }
 
     pub(super) fn into_named_constants(self) -> Vec<TokenStream> {
@@ -114,21 +175,20 @@ impl Resolver for Scope<'_> {
             self.locals.iter().rev().flat_map(|block| block.iter().rev()).find(|(local, _)| *local == text);
         let shared = || self.lets.get(&text).map(|value| (text.clone(), *value));
         if let Some((_, value)) = local.cloned().or_else(shared) {
-            return match value {
-                Some(value) if self.in_constraint && graph.dependence(value).on_v => {
-                    let message = format!("`{text}` contains der(..), which a holonomic constraint cannot");
+            let Some(value) = value else { return Resolved::Mistaken };
+            return match self.variables.refuse_shared(&text, graph.dependence(value)) {
+                Some(message) => {
                     diagnostics.report(name.span(), message);
                     Resolved::Mistaken
                 }
-                Some(value) => Resolved::Value(value),
-                None => Resolved::Mistaken,
+                None => Resolved::Value(value),
             };
         }
         if let Some(index) = self.coordinates.iter().position(|coordinate| *coordinate == text) {
-            return Resolved::Value(graph.symbol(Symbol::Coordinate(index)));
+            return self.variable(graph, name, ("a coordinate", Symbol::Coordinate(index)), diagnostics);
         }
         if text == "t" {
-            return Resolved::Value(graph.symbol(Symbol::Time));
+            return self.variable(graph, name, ("the time", Symbol::Time), diagnostics);
         }
         if let Some(index) = self.fields.iter().position(|field| field.name == text) {
             if self.fields[index].is_f64 {
@@ -140,6 +200,9 @@ impl Resolver for Scope<'_> {
                 diagnostics.report(name.span(), message);
             }
             return Resolved::Mistaken;
+        }
+        if let Some(index) = self.inputs.iter().position(|input| *input == text) {
+            return self.variable(graph, name, ("an input", Symbol::Input(index)), diagnostics);
         }
         if self.all_lets.contains(&text) {
             let message = if self.context == let_context(&text) {
@@ -160,11 +223,7 @@ impl Resolver for Scope<'_> {
         name: &Ident,
         diagnostics: &mut Diagnostics,
     ) -> Option<ExprId> {
-        if self.in_constraint {
-            let message = format!(
-                "der() in a holonomic constraint: {} may relate positions and `t` only",
-                self.context
-            );
+        if let Some(message) = self.variables.refuse_der(&self.context) {
             diagnostics.report(der, message);
             return None;
         }
@@ -175,16 +234,12 @@ impl Resolver for Scope<'_> {
         if !self.has_all_coordinates {
             return None;
         }
-        let is_local = self.locals.iter().flatten().any(|(local, _)| *local == text);
-        let message = if is_local || self.all_lets.contains(&text) {
-            format!("`der` takes a coordinate, `{text}` is a shared expression")
-        } else if self.fields.iter().any(|field| field.name == text) {
-            format!("`der` takes a coordinate, `{text}` is a parameter")
-        } else if text == "t" {
-            "`der` takes a coordinate, `t` is the time".to_owned()
-        } else {
-            let similar = suggestion(&text, self.coordinates.iter().map(String::as_str));
-            format!("unknown name `{text}` in {}{similar}", self.context)
+        let message = match self.other_kind(&text) {
+            Some(kind) => format!("`der` takes a coordinate, `{text}` is {kind}"),
+            None => {
+                let similar = suggestion(&text, self.coordinates.iter().map(String::as_str));
+                format!("unknown name `{text}` in {}{similar}", self.context)
+            }
         };
         let message = format!("{message}\ncoordinates: {}", self.coordinates.join(", "));
         diagnostics.report(name.span(), message);
@@ -202,7 +257,7 @@ impl Resolver for Scope<'_> {
     }
 
     fn define(&mut self, name: &Ident, value: Option<ExprId>, diagnostics: &mut Diagnostics) {
-        check::reserved("shared expression", name, diagnostics);
+        check::reserved("a shared expression", name, diagnostics);
         self.locals.last_mut().expect("a `let` stands in a block").push((name.to_string(), value));
     }
 
@@ -223,7 +278,12 @@ impl Resolver for Scope<'_> {
         let shared = self.all_lets.iter().filter(|name| self.lets.contains_key(*name)).cloned();
         let shared: Vec<String> =
             shared.chain(self.locals.iter().flatten().map(|(name, _)| name.clone())).collect();
-        let known = [("coordinates", &self.coordinates), ("parameters", &parameters), ("shared", &shared)];
+        let known = [
+            ("coordinates", &self.coordinates),
+            ("inputs", &self.inputs),
+            ("parameters", &parameters),
+            ("shared", &shared),
+        ];
         let names = known.iter().flat_map(|(_, names)| names.iter()).map(String::as_str);
         let similar = suggestion(&name.to_string(), names);
         let lists = known.iter().filter(|(_, names)| !names.is_empty());

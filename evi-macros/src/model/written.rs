@@ -1,7 +1,7 @@
 //! The equations as the user wrote them, as text.
 //!
-//! In: a declaration without mistakes. Out: every energy, the shared subexpressions that they use, and every
-//! constraint, in two notations. A graph of its own keeps the user's order of terms and factors.
+//! In: a declaration without mistakes. Out: every energy, force, frequency and observed quantity, the shared subexpressions
+//! that they use, and every constraint, in two notations. A graph of its own keeps the user's order of terms and factors.
 
 use std::collections::HashMap;
 
@@ -31,7 +31,8 @@ impl Formula {
     }
 }
 
-/// The equations in reading order: `L`, what it is made of, and the constraints by name.
+/// The equations in reading order: `L`, what it is made of, forces, frequencies, observed quantities, and the constraints by
+/// name.
 pub(crate) fn written(declaration: &Declaration) -> Vec<WrittenEquation> {
     let mut graph = Graph::as_written();
     let Some(model) = resolve(declaration, &mut graph, &mut Diagnostics::default()) else {
@@ -43,6 +44,7 @@ pub(crate) fn written(declaration: &Declaration) -> Vec<WrittenEquation> {
         Symbol::NamedConstant(index) => model.named_constants[index].to_string().replace(' ', ""),
         Symbol::Coordinate(index) | Symbol::Velocity(index) => model.coordinates[index].to_string(),
         Symbol::Time => "t".to_owned(),
+        Symbol::Input(index) => model.inputs[index].to_string(),
     };
     let names = Names { symbol: &symbol, shared: &shared };
     let expression = |root| Formula::new(|notation| print(&graph, root, &names, notation));
@@ -63,6 +65,26 @@ pub(crate) fn written(declaration: &Declaration) -> Vec<WrittenEquation> {
             _ => "L",
         };
         equations.push(definition(letter, expression(energy.root)));
+    }
+    if let Some((_, dissipation)) = model.forces.dissipation {
+        equations.push(definition("D", expression(dissipation)));
+    }
+    let belonging_to = |letter: (&str, &str), coordinate: usize, root| {
+        let name = model.coordinates[coordinate].to_string();
+        let left = Formula {
+            unicode: format!("{}_{}", letter.0, print_name(&name, Notation::Unicode)),
+            latex: format!("{}_{{{}}}", letter.1, print_name(&name, Notation::Latex)),
+        };
+        WrittenEquation { name: String::new(), left, right: expression(root) }
+    };
+    for (coordinate, _, root) in &model.forces.generalized {
+        equations.push(belonging_to(("f", "f"), *coordinate, *root));
+    }
+    for (coordinate, root) in &model.frequencies {
+        equations.push(belonging_to(("ω", "\\omega"), *coordinate, *root));
+    }
+    for (name, root) in &model.observables {
+        equations.push(definition(&name.to_string(), expression(*root)));
     }
     for definition_of in &model.source.lets {
         if shared.get(&definition_of.root).is_some_and(|name| definition_of.name == name) {
@@ -85,7 +107,13 @@ pub(crate) fn written(declaration: &Declaration) -> Vec<WrittenEquation> {
 /// one.
 fn shared_names(graph: &Graph, model: &Model) -> HashMap<ExprId, String> {
     let energies = model.energies.iter().map(|energy| energy.root);
-    let roots: Vec<ExprId> = energies.chain(model.constraints.iter().map(|(_, root)| *root)).collect();
+    let roots: Vec<ExprId> = energies
+        .chain(model.constraints.iter().map(|(_, root)| *root))
+        .chain(model.forces.dissipation.iter().map(|(_, root)| *root))
+        .chain(model.forces.generalized.iter().map(|(_, _, root)| *root))
+        .chain(model.frequencies.iter().map(|(_, root)| *root))
+        .chain(model.observables.iter().map(|(_, root)| *root))
+        .collect();
     let used = graph.reachable(&roots, |_| false);
     let mut shared = HashMap::new();
     for definition in &model.source.lets {

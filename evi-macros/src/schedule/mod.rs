@@ -25,12 +25,24 @@ pub(crate) struct Programs {
     pub(crate) constraints: Program,
     pub(crate) constraint_derivatives: Program,
     pub(crate) constraint_curvature: Program,
+    /// The forces, and the forces with the varying entries of their derivatives; if there are any.
+    pub(crate) forces: Option<ForcePrograms>,
+    /// The quantities to record, if there are any.
+    pub(crate) observables: Option<Program>,
+    /// The frequencies of all coordinates, all of them constants; empty if there are none.
+    pub(crate) frequencies: Vec<ExprId>,
+}
+
+/// The kernels of forces that are no derivatives of `L`.
+pub(crate) struct ForcePrograms {
+    pub(crate) values: Program,
+    pub(crate) derivatives: Program,
 }
 
 impl Programs {
     /// Every kernel by the name of its function, in the order of the trait.
-    pub(crate) fn kernels(&self) -> [(&'static str, &Program); 7] {
-        [
+    pub(crate) fn kernels(&self) -> Vec<(&'static str, &Program)> {
+        let always = [
             ("constants", &self.constants),
             ("lagrangian", &self.lagrangian),
             ("lagrangian_gradient", &self.lagrangian_gradient),
@@ -38,7 +50,13 @@ impl Programs {
             ("constraints", &self.constraints),
             ("constraint_derivatives", &self.constraint_derivatives),
             ("constraint_curvature", &self.constraint_curvature),
-        ]
+        ];
+        let forces = self
+            .forces
+            .iter()
+            .flat_map(|forces| [("forces", &forces.values), ("force_derivatives", &forces.derivatives)]);
+        let observables = self.observables.iter().map(|program| ("observables", program));
+        always.into_iter().chain(forces).chain(observables).collect()
     }
 }
 
@@ -85,9 +103,14 @@ pub(crate) fn schedule(graph: &Graph, equations: &Equations, structure: Structur
     let constraint_derivatives: Vec<ExprId> =
         constraints.iter().chain(&structure.jacobian_entries).copied().collect();
     let curvature = equations.curvature.clone();
+    let forces = equations.forces.values.clone();
+    let force_derivatives: Vec<ExprId> = forces.iter().chain(&structure.force_entries).copied().collect();
+    let observables = equations.observables.clone();
+    let frequencies = equations.frequencies.clone();
 
     let mut slots = ConstantSlots::new(&structure.constant_entries);
-    for roots in [&lagrangian, &derivatives, &constraint_derivatives, &curvature] {
+    let all = [&lagrangian, &derivatives, &constraint_derivatives, &curvature];
+    for roots in all.into_iter().chain([&force_derivatives, &observables, &frequencies]) {
         slots.add_constants_of(graph, roots);
     }
     // Outside `constants`, whatever depends on parameters alone is read, not computed.
@@ -101,6 +124,10 @@ pub(crate) fn schedule(graph: &Graph, equations: &Equations, structure: Structur
         constraints: kernel(constraints),
         constraint_derivatives: kernel(constraint_derivatives),
         constraint_curvature: kernel(curvature),
+        forces: (!forces.is_empty())
+            .then(|| ForcePrograms { values: kernel(forces), derivatives: kernel(force_derivatives) }),
+        observables: (!observables.is_empty()).then(|| kernel(observables)),
+        frequencies,
         structure,
         slots,
     }

@@ -261,6 +261,7 @@ const _: () = {
                 },
             ],
             constraint_graph: &[(0usize, 1usize)],
+            forces: ::evi_core::__private::ForceStructure::NONE,
             operations: ::evi_core::__private::KernelOperations {
                 constants: ::evi_core::__private::Operations {
                     additions: 0usize,
@@ -311,6 +312,8 @@ const _: () = {
             coordinates: Self::COORDINATES,
             constraints: Self::CONSTRAINTS,
             parameters: Self::PARAMETERS,
+            inputs: Self::INPUTS,
+            observables: Self::OBSERVABLES,
             equations: &[
                 ::evi_core::__private::Equation {
                     name: "",
@@ -456,6 +459,9 @@ const _: () = {
         type PerConstant<X: ::core::clone::Clone> = [X; 9usize];
         type PerHessianEntry<X: ::core::clone::Clone> = [X; 0usize];
         type PerJacobianEntry<X: ::core::clone::Clone> = [X; 6usize];
+        type PerInput<X: ::core::clone::Clone> = [X; 0usize];
+        type PerObservable<X: ::core::clone::Clone> = [X; 0usize];
+        type PerForceEntry<X: ::core::clone::Clone> = [X; 0usize];
         type DenseKktFactors = ::evi_core::__private::DenseLu<6usize>;
         type KktFactors = ::evi_core::__private::Guarded<KktElimination, 6usize>;
         type MassFactors = ::evi_core::__private::Guarded<MassElimination, 4usize>;

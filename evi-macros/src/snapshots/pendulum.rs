@@ -67,6 +67,7 @@ const _: () = {
             },
             each_constraint: &[],
             constraint_graph: &[],
+            forces: ::evi_core::__private::ForceStructure::NONE,
             operations: ::evi_core::__private::KernelOperations {
                 constants: ::evi_core::__private::Operations {
                     additions: 0usize,
@@ -117,6 +118,8 @@ const _: () = {
             coordinates: Self::COORDINATES,
             constraints: Self::CONSTRAINTS,
             parameters: Self::PARAMETERS,
+            inputs: Self::INPUTS,
+            observables: Self::OBSERVABLES,
             equations: &[
                 ::evi_core::__private::Equation {
                     name: "",
@@ -240,6 +243,9 @@ const _: () = {
         type PerConstant<X: ::core::clone::Clone> = [X; 3usize];
         type PerHessianEntry<X: ::core::clone::Clone> = [X; 1usize];
         type PerJacobianEntry<X: ::core::clone::Clone> = [X; 0usize];
+        type PerInput<X: ::core::clone::Clone> = [X; 0usize];
+        type PerObservable<X: ::core::clone::Clone> = [X; 0usize];
+        type PerForceEntry<X: ::core::clone::Clone> = [X; 0usize];
         type DenseKktFactors = ::evi_core::__private::DenseLu<1usize>;
         type KktFactors = ::evi_core::__private::Inverse1;
         type MassFactors = ::evi_core::__private::Inverse1;

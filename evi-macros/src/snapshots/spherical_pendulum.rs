@@ -182,6 +182,7 @@ const _: () = {
                 },
             ],
             constraint_graph: &[],
+            forces: ::evi_core::__private::ForceStructure::NONE,
             operations: ::evi_core::__private::KernelOperations {
                 constants: ::evi_core::__private::Operations {
                     additions: 0usize,
@@ -232,6 +233,8 @@ const _: () = {
             coordinates: Self::COORDINATES,
             constraints: Self::CONSTRAINTS,
             parameters: Self::PARAMETERS,
+            inputs: Self::INPUTS,
+            observables: Self::OBSERVABLES,
             equations: &[
                 ::evi_core::__private::Equation {
                     name: "",
@@ -366,6 +369,9 @@ const _: () = {
         type PerConstant<X: ::core::clone::Clone> = [X; 5usize];
         type PerHessianEntry<X: ::core::clone::Clone> = [X; 0usize];
         type PerJacobianEntry<X: ::core::clone::Clone> = [X; 3usize];
+        type PerInput<X: ::core::clone::Clone> = [X; 0usize];
+        type PerObservable<X: ::core::clone::Clone> = [X; 0usize];
+        type PerForceEntry<X: ::core::clone::Clone> = [X; 0usize];
         type DenseKktFactors = ::evi_core::__private::DenseLu<4usize>;
         type KktFactors = ::evi_core::__private::Guarded<KktElimination, 4usize>;
         type MassFactors = ::evi_core::__private::Guarded<MassElimination, 3usize>;

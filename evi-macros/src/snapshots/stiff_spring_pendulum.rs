@@ -82,6 +82,7 @@ const _: () = {
             },
             each_constraint: &[],
             constraint_graph: &[],
+            forces: ::evi_core::__private::ForceStructure::NONE,
             operations: ::evi_core::__private::KernelOperations {
                 constants: ::evi_core::__private::Operations {
                     additions: 0usize,
@@ -132,6 +133,8 @@ const _: () = {
             coordinates: Self::COORDINATES,
             constraints: Self::CONSTRAINTS,
             parameters: Self::PARAMETERS,
+            inputs: Self::INPUTS,
+            observables: Self::OBSERVABLES,
             equations: &[
                 ::evi_core::__private::Equation {
                     name: "",
@@ -266,6 +269,9 @@ const _: () = {
         type PerConstant<X: ::core::clone::Clone> = [X; 6usize];
         type PerHessianEntry<X: ::core::clone::Clone> = [X; 3usize];
         type PerJacobianEntry<X: ::core::clone::Clone> = [X; 0usize];
+        type PerInput<X: ::core::clone::Clone> = [X; 0usize];
+        type PerObservable<X: ::core::clone::Clone> = [X; 0usize];
+        type PerForceEntry<X: ::core::clone::Clone> = [X; 0usize];
         type DenseKktFactors = ::evi_core::__private::DenseLu<2usize>;
         type KktFactors = ::evi_core::__private::Inverse2;
         type MassFactors = ::evi_core::__private::Inverse2;

@@ -24,18 +24,26 @@ pub(crate) struct Structure {
     pub(crate) hessian_vt: Vec<Entry>,
     pub(crate) jacobian_q: Vec<Entry>,
     pub(crate) jacobian_t: Vec<Entry>,
+    pub(crate) force_q: Vec<Entry>,
+    pub(crate) force_v: Vec<Entry>,
+    /// Coordinates on which a force acts that is no derivative of `L`.
+    pub(crate) forced: Vec<usize>,
     /// Entries of matrices that depend on parameters alone; an entry's slot is its index here.
     pub(crate) constant_entries: Vec<ExprId>,
     /// Varying entries of the Hessian, in the order of the kernel's output.
     pub(crate) hessian_entries: Vec<ExprId>,
     /// Varying entries of the Jacobian, in the order of the kernel's output.
     pub(crate) jacobian_entries: Vec<ExprId>,
+    /// Varying entries of the forces' derivatives, in the order of the kernel's output.
+    pub(crate) force_entries: Vec<ExprId>,
     /// What `∂²L/∂v²` depends on.
     pub(crate) mass: Dependence,
     /// What `L` depends on.
     pub(crate) lagrangian: Dependence,
     /// What `φ` depends on.
     pub(crate) constraints: Dependence,
+    /// What the forces depend on.
+    pub(crate) forces: Dependence,
     /// The kind of the equations.
     pub(crate) classification: Classification,
 }
@@ -64,6 +72,11 @@ pub(crate) fn analyze(graph: &Graph, equations: &Equations) -> Structure {
     let (hessian_vv, hessian_vt) = (hessian(&equations.hessian_vv), hessian(&equations.hessian_vt));
     let mut jacobian = |partials| places(graph, partials, &mut constant_entries, &mut jacobian_entries);
     let (jacobian_q, jacobian_t) = (jacobian(&equations.jacobian_q), jacobian(&equations.jacobian_t));
+    let forces = &equations.forces;
+    let mut force_entries = Vec::new();
+    let mut force = |partials| places(graph, partials, &mut constant_entries, &mut force_entries);
+    let (force_q, force_v) = (force(&forces.by_q), force(&forces.by_v));
+    let is_forced = |&i: &usize| graph.as_number(forces.values[i]) != Some(0.0);
     Structure {
         hessian_qq,
         hessian_vq,
@@ -71,12 +84,17 @@ pub(crate) fn analyze(graph: &Graph, equations: &Equations) -> Structure {
         hessian_vt,
         jacobian_q,
         jacobian_t,
+        force_q,
+        force_v,
+        forced: (0..forces.values.len()).filter(is_forced).collect(),
         constant_entries,
         hessian_entries,
         jacobian_entries,
+        force_entries,
         mass: union(graph, equations.hessian_vv.iter().map(|partial| partial.value)),
         lagrangian: graph.dependence(equations.lagrangian),
         constraints: union(graph, equations.constraints.iter().copied()),
+        forces: union(graph, forces.values.iter().copied()),
         classification: classify::classify(graph, equations),
     }
 }
@@ -117,9 +135,12 @@ impl Structure {
         blocks.flat_map(|entry| [(entry.row, entry.col), (entry.col, entry.row)]).collect()
     }
 
-    /// The elimination of the saddle-point matrix `[A Gᵀ; G 0]`.
+    /// The elimination of the saddle-point matrix `[A Gᵀ; G 0]`; forces couple coordinates in `A`, without symmetry.
     pub(crate) fn kkt_elimination(&self, n_coordinates: usize, n_constraints: usize) -> Option<Elimination> {
         let mut entries = self.coupled_coordinates();
+        for entry in self.force_q.iter().chain(&self.force_v) {
+            entries.extend([(entry.row, entry.col), (entry.col, entry.row)]);
+        }
         for entry in &self.jacobian_q {
             entries.insert((n_coordinates + entry.row, entry.col));
             entries.insert((entry.col, n_coordinates + entry.row));

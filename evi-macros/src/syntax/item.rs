@@ -5,6 +5,7 @@
 use proc_macro2::{Delimiter, Group, Ident, Punct, Spacing, Span, TokenStream, TokenTree};
 
 use super::expression::Expression;
+use super::labelled::{Form, Labelled, NameList, labelled, name_list};
 use crate::diagnostics::{Diagnostics, closest, suggestion};
 
 /// One item of the attribute. A value is missing where it did not parse.
@@ -23,6 +24,19 @@ pub(crate) enum Item {
         value: Option<Expression>,
     },
     Constraint(Constraint),
+    /// `dissipation = EXPR`
+    Dissipation {
+        keyword: Ident,
+        value: Option<Expression>,
+    },
+    /// `force(COORDINATE: EXPR)`
+    Force(Labelled),
+    /// `input(NAME, ..)`
+    Inputs(NameList),
+    /// `frequency(COORDINATE, ..: EXPR)`
+    Frequency(Labelled),
+    /// `observe(NAME: EXPR)`
+    Observe(Labelled),
     Let(Let),
     /// None of these, which has been reported.
     Unknown,
@@ -50,7 +64,38 @@ pub(crate) struct Let {
 }
 
 /// The items, as the user writes them.
-const KEYWORDS: [&str; 6] = ["coordinates", "lagrangian", "kinetic", "potential", "constraint", "let"];
+const KEYWORDS: [&str; 11] = [
+    "coordinates",
+    "lagrangian",
+    "kinetic",
+    "potential",
+    "constraint",
+    "dissipation",
+    "force",
+    "input",
+    "frequency",
+    "observe",
+    "let",
+];
+
+const FORCE: Form = Form {
+    example: "force(coordinate: expression)",
+    unnamed: "a force names its coordinate",
+    label: "a force",
+    second_name: Some("a force acts on one coordinate: write one `force(..)` for each"),
+};
+const FREQUENCY: Form = Form {
+    example: "frequency(coordinate, ..: expression)",
+    unnamed: "a frequency names its coordinates",
+    label: "a frequency",
+    second_name: None,
+};
+const OBSERVE: Form = Form {
+    example: "observe(name: expression)",
+    unnamed: "an observed quantity has a name",
+    label: "an observed quantity",
+    second_name: Some("an observed quantity has one name: write one `observe(..)` for each"),
+};
 
 /// Parses the items between the parentheses of an attribute.
 pub(super) fn parse_items(tokens: TokenStream, diagnostics: &mut Diagnostics) -> Vec<Item> {
@@ -72,7 +117,7 @@ pub(super) fn parse_items(tokens: TokenStream, diagnostics: &mut Diagnostics) ->
 }
 
 /// Splits at the commas outside of groups; a trailing comma adds nothing.
-fn split_at_commas(tokens: TokenStream) -> Vec<Vec<TokenTree>> {
+pub(super) fn split_at_commas(tokens: TokenStream) -> Vec<Vec<TokenTree>> {
     let mut items = vec![Vec::new()];
     for token in tokens {
         match &token {
@@ -89,10 +134,12 @@ fn begins_item(before: &[TokenTree], tokens: &[TokenTree]) -> bool {
     let is_named = matches!(before.last(), Some(TokenTree::Ident(previous)) if previous == "let");
     match tokens {
         [TokenTree::Ident(keyword), TokenTree::Group(_), ..] => {
-            keyword == "coordinates" || keyword == "constraint"
+            let lists = ["coordinates", "constraint", "force", "input", "frequency", "observe"];
+            lists.iter().any(|list| keyword == list)
         }
         [TokenTree::Ident(keyword), TokenTree::Punct(equals), rest @ ..] => {
-            let is_energy = ["lagrangian", "kinetic", "potential"].iter().any(|energy| keyword == energy);
+            let is_energy =
+                ["lagrangian", "kinetic", "potential", "dissipation"].iter().any(|energy| keyword == energy);
             is_energy && equals.as_char() == '=' && joined(equals, rest).is_none() && !is_named
         }
         [TokenTree::Ident(keyword), ..] => keyword == "let",
@@ -130,13 +177,21 @@ fn parse_item(tokens: &[TokenTree], diagnostics: &mut Diagnostics) -> Option<Ite
             Item::Potential { keyword, value }
         }
         Some("constraint") => Item::Constraint(constraint(&keyword, rest, diagnostics)),
+        Some("dissipation") => {
+            let value = assigned(&keyword, "dissipation = expression", rest, diagnostics);
+            Item::Dissipation { keyword, value }
+        }
+        Some("force") => Item::Force(labelled(&keyword, FORCE, rest, diagnostics)),
+        Some("input") => Item::Inputs(name_list(&keyword, "input(name, ..)", rest, diagnostics)),
+        Some("frequency") => Item::Frequency(labelled(&keyword, FREQUENCY, rest, diagnostics)),
+        Some("observe") => Item::Observe(labelled(&keyword, OBSERVE, rest, diagnostics)),
         Some("let") => return let_item(&keyword, rest, diagnostics).map(Item::Let),
         _ => Item::Unknown,
     })
 }
 
 /// The contents of the parentheses that follow a keyword.
-fn parenthesized(
+pub(super) fn parenthesized(
     keyword: &Ident,
     form: &str,
     rest: &[TokenTree],
@@ -225,7 +280,7 @@ fn coordinates(keyword: Ident, rest: &[TokenTree], diagnostics: &mut Diagnostics
 }
 
 /// A name that Rust accepts for a variable.
-fn identifier(name: &Ident, diagnostics: &mut Diagnostics) -> Option<Ident> {
+pub(super) fn identifier(name: &Ident, diagnostics: &mut Diagnostics) -> Option<Ident> {
     // `syn` parses what is not a keyword.
     let parsed = syn::parse2::<Ident>(TokenTree::Ident(name.clone()).into());
     parsed

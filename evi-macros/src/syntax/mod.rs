@@ -7,9 +7,11 @@ mod attribute;
 mod expression;
 mod integers;
 mod item;
+mod labelled;
 mod nesting;
 mod spine;
 
 pub(crate) use attribute::{Declaration, Field, NotAnItem, parse};
 pub(crate) use expression::{Expression, Resolved, Resolver, lower};
 pub(crate) use item::{Constraint, Coordinates, Item, Let};
+pub(crate) use labelled::Labelled;

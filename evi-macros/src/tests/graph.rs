@@ -79,7 +79,7 @@ fn dependence_is_that_of_the_symbols_below() {
     fn check(text: &str, on_q: bool, on_v: bool, on_t: bool) {
         let mut graph = Graph::default();
         let root = expression(&mut graph, text);
-        assert_eq!(graph.dependence(root), Dependence { on_q, on_v, on_t }, "{text}");
+        assert_eq!(graph.dependence(root), Dependence { on_q, on_v, on_t, on_inputs: false }, "{text}");
     }
     check("1.0", false, false, false);
     check("a * PI + b.sin()", false, false, false);

@@ -89,3 +89,25 @@ fn on_what_is_no_struct_with_named_fields() {
     check("#[evi(coordinates(x), kinetic = der(x), potential = 0.0)] enum E { A }", 1, 1, 0);
     check("struct S { m: f64 }", 1, 0, 0);
 }
+
+/// Inputs and observed quantities are counted in items that are mistaken.
+#[test]
+fn forces_and_what_belongs_to_them() {
+    let source = "
+        #[evi(
+            coordinates(x, y),
+            lagrangian = 0.5 * der(x).powi(2) + 0.5 * der(y).powi(2),
+            input(u, w),
+            force(x: u + v),
+            force(y: w^2),
+            frequency(x: y),
+            observe(first: z),
+            observe(second: u),
+        )]
+        struct S;";
+    check(source, 4, 2, 0);
+    let text = expand(source.parse().expect("tokens")).to_string().replace(' ', "");
+    assert!(text.contains("typePerInput<X:::core::clone::Clone>=[X;2usize];"), "{text}");
+    assert!(text.contains("typePerObservable<X:::core::clone::Clone>=[X;2usize];"), "{text}");
+    assert!(text.contains("__private::HasFrequenciesforS"), "{text}");
+}

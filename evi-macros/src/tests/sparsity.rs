@@ -5,7 +5,7 @@ use super::workbench::{Compiled, compiled};
 use crate::expr::Dependence;
 use crate::structure::{Entry, EntryValue};
 
-const CONSTANT: Dependence = Dependence { on_q: false, on_v: false, on_t: false };
+const CONSTANT: Dependence = Dependence { on_q: false, on_v: false, on_t: false, on_inputs: false };
 const ON_Q: Dependence = Dependence { on_q: true, ..CONSTANT };
 
 /// Rows, columns, and `c` for constant or `v` for varying: `"00c 11v"`.
@@ -35,7 +35,7 @@ fn double_pendulum() {
     // Of the six entries of G, 2(x2 − x1) and its negative differ, as do those of y.
     assert_eq!(structure.jacobian_entries.len(), 6);
     assert_eq!((structure.mass, structure.constraints), (CONSTANT, ON_Q));
-    assert_eq!(structure.lagrangian, Dependence { on_q: true, on_v: true, on_t: false });
+    assert_eq!(structure.lagrangian, Dependence { on_v: true, ..ON_Q });
 }
 
 #[test]
@@ -84,8 +84,8 @@ fn every_block_when_everything_couples() {
     check("vt", &structure.hessian_vt, "00v");
     check("G", &structure.jacobian_q, "00v 01c");
     check("φt", &structure.jacobian_t, "00v");
-    assert_eq!(structure.mass, Dependence { on_q: true, on_v: true, on_t: false });
-    assert_eq!(structure.constraints, Dependence { on_q: true, on_v: false, on_t: true });
+    assert_eq!(structure.mass, Dependence { on_v: true, ..ON_Q });
+    assert_eq!(structure.constraints, Dependence { on_t: true, ..ON_Q });
 }
 
 #[test]
@@ -98,7 +98,7 @@ fn what_cancels_is_absent() {
         struct Free;",
     );
     check("qq", &programs.structure.hessian_qq, "");
-    assert_eq!(programs.structure.lagrangian, Dependence { on_q: false, on_v: true, on_t: false });
+    assert_eq!(programs.structure.lagrangian, Dependence { on_v: true, ..CONSTANT });
 }
 
 #[test]
@@ -110,4 +110,46 @@ fn partial_derivatives_are_stored_once() {
     values.dedup();
     assert_eq!(values.len(), n_entries);
     assert_eq!(compiled.equations.hessian_qq.len(), 3);
+}
+
+/// Forces of every kind: their derivatives are found entry by entry, and the saddle-point matrix is eliminated with them.
+#[test]
+fn forces_have_the_pattern_of_their_own_derivatives() {
+    let source = "
+        #[evi(
+            coordinates(x, y, z),
+            kinetic = 0.5 * m * (der(x).powi(2) + der(y).powi(2) + der(z).powi(2)),
+            potential = 0.0,
+            input(u),
+            dissipation = 0.5 * c * (der(x) - der(y)).powi(2),
+            force(y: u * x + t),
+        )]
+        struct Forced { m: f64, c: f64 }";
+    let structure = compiled(source).programs.structure;
+    let places = |entries: &[crate::structure::Entry]| -> Vec<(usize, usize)> {
+        entries.iter().map(|entry| (entry.row, entry.col)).collect()
+    };
+    assert_eq!(structure.forced, [0, 1]);
+    assert_eq!(places(&structure.force_q), [(1, 0)]);
+    assert_eq!(places(&structure.force_v), [(0, 0), (0, 1), (1, 0), (1, 1)]);
+    // u is set from step to step; c and −c are parameters.
+    assert_eq!(structure.force_entries.len(), 1);
+    assert_eq!(structure.forces, Dependence { on_v: true, on_t: true, on_inputs: true, ..ON_Q });
+    let kkt = structure.kkt_elimination(3, 0).expect("a mass on every diagonal");
+    assert!(kkt.entries.contains(&(0, 1)) && kkt.entries.contains(&(1, 0)) && !kkt.entries.contains(&(0, 2)));
+    let mass = structure.mass_elimination(3).expect("a mass on every diagonal");
+    assert!(
+        mass.entries.iter().all(|(row, col)| row == col),
+        "the mass matrix is diagonal whatever the forces"
+    );
+}
+
+/// Forces that cancel leave nothing behind.
+#[test]
+fn forces_that_vanish_are_absent() {
+    let source = "
+        #[evi(coordinates(x), lagrangian = 0.5 * der(x).powi(2), force(x: c * der(x) - c * der(x)))]
+        struct Unforced { c: f64 }";
+    let programs = compiled(source).programs;
+    assert!(programs.structure.forced.is_empty() && programs.forces.is_none());
 }

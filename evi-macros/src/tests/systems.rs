@@ -1,4 +1,4 @@
-//! The five small systems of the gallery, with the equations as they stand there.
+//! The small systems of the gallery, with the equations as they stand there.
 
 /// Two constraints, constant mass matrix, uniform gravity.
 pub(super) const DOUBLE_PENDULUM: &str = "
@@ -51,6 +51,28 @@ pub(super) const HARMONIC_OSCILLATOR: &str = "
     #[evi(coordinates(x), kinetic = 0.5 * m * der(x).powi(2), potential = 0.5 * k * x.powi(2))]
     pub struct HarmonicOscillator { pub m: f64, pub k: f64 }";
 
+/// Forces of every kind, an input, a frequency, an observed quantity; not of the gallery.
+pub(super) const PUSHED_OSCILLATOR: &str = "
+    #[derive(MechanicalSystem)]
+    #[evi(
+        coordinates(x, y),
+        kinetic = 0.5 * m * (der(x).powi(2) + der(y).powi(2)),
+        potential = 0.5 * k * x.powi(2),
+        input(push),
+        let follow = push * x,
+        dissipation = 0.5 * c * der(x).powi(2),
+        force(y: follow + a * (w * t).cos()),
+        frequency(x: (k / m).sqrt()),
+        observe(power: follow * der(y)),
+    )]
+    pub struct PushedOscillator { pub m: f64, pub k: f64, pub c: f64, pub a: f64, pub w: f64 }";
+
 /// All of them.
-pub(super) const SMALL_SYSTEMS: [&str; 5] =
-    [DOUBLE_PENDULUM, PENDULUM, SPHERICAL_PENDULUM, STIFF_SPRING_PENDULUM, HARMONIC_OSCILLATOR];
+pub(super) const SMALL_SYSTEMS: [&str; 6] = [
+    DOUBLE_PENDULUM,
+    PENDULUM,
+    SPHERICAL_PENDULUM,
+    STIFF_SPRING_PENDULUM,
+    HARMONIC_OSCILLATOR,
+    PUSHED_OSCILLATOR,
+];

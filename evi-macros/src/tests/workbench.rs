@@ -99,6 +99,7 @@ impl Point {
             Symbol::Coordinate(index) => spread(index, 0),
             Symbol::Velocity(index) => spread(index, 2),
             Symbol::Time => self.values[4],
+            Symbol::Input(index) => -0.6 + 0.31 * index as f64,
         }
     }
 

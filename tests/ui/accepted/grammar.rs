@@ -80,7 +80,48 @@ pub struct Blocks;
 )]
 pub struct Functions;
 
+/// Forces, inputs, frequencies and observed quantities; keywords as names.
+#[derive(MechanicalSystem)]
+#[evi(
+    coordinates(x, y, angle),
+    input(force, observe,),
+    input(torque),
+    let lever = { let arm = 2.0; arm * angle.sin() },
+    let power = force * der(x) + torque,
+    kinetic = 0.5 * input * (der(x).powi(2) + der(y).powi(2) + der(angle).powi(2)),
+    potential = -lever,
+    dissipation = { let rate = der(x) - der(y); 0.5 * rate.powi(2) } + (0.25 * t) * der(angle).powi(4),
+    force(x: force * lever + power / COUNT),
+    force(angle: { let torque = torque + t.sin(); torque } * STIFFNESS),
+    frequency(x, y: (STIFFNESS / input).sqrt()),
+    frequency(angle: 2),
+    observe(height: std::f64::consts::PI + y),
+    observe(x: power * observe),
+)]
+pub struct Forces {
+    /// A mass by a name that is a keyword of the grammar.
+    pub input: f64,
+}
+
+/// A frequency that is a number, a force that is constant.
+#[derive(MechanicalSystem)]
+#[evi(coordinates(x), lagrangian = 0.5 * der(x).powi(2), frequency(x: 1.5), force(x: 1.0))]
+pub struct Numbers;
+
+/// Without motion, a dissipation may still depend on place and time.
+#[derive(MechanicalSystem)]
+#[evi(coordinates(x), lagrangian = 0.5 * der(x).powi(2), dissipation = (x * t).cos() * der(x).exp())]
+pub struct Dissipation;
+
 fn main() {
+    let scheme = Evi::simpson(0.01).scene_frequencies();
+    let mut run = Simulation::new(Forces { input: 2.0 }, scheme).start([1.0, 0.0, 0.5], [0.0; 3]).unwrap();
+    run.set_inputs([1.0, 2.0, 3.0]);
+    assert_eq!(run.integrate(0.1).unwrap().series("x").unwrap().len(), 11);
+    assert_eq!(Forces::INPUTS, ["force", "observe", "torque"]);
+    let scheme = Evi::simpson(0.01).scene_frequencies();
+    assert!(Simulation::new(Numbers, scheme).start([1.0], [0.0]).unwrap().advance().is_ok());
+    assert!(Simulation::new(Dissipation, Evi::midpoint(0.01)).start([1.0], [0.0]).unwrap().advance().is_ok());
     let system = Attributes { mass: 1.0, length: 1.0, gravity: 9.81 };
     let mut run = Simulation::new(system, Evi::midpoint(0.01)).start([1.0, 0.0], [0.0; 2]).unwrap();
     assert_eq!(run.integrate(0.1).unwrap().last().q().len(), 2);
