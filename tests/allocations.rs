@@ -173,6 +173,25 @@ fn no_step_of_a_baseline_allocates() {
 }
 
 #[test]
+fn no_step_of_a_composition_allocates() {
+    check(DOUBLE, Evi::midpoint(0.01).composed(Composition::kahan_li_8()), mild());
+    check(DOUBLE, Evi::simpson(0.01).frequencies(PER_BODY).composed(Composition::suzuki_4()), mild());
+    check(SPHERICAL, Rattle::new(0.01).composed(Composition::yoshida_6()), SPHERICAL.one_radian());
+    check(PENDULUM, Evi::simpson(0.01).composed(Composition::triple_jump_4()), SWING);
+}
+
+#[test]
+fn no_step_of_a_galerkin_integrator_allocates() {
+    check(DOUBLE, Galerkin::<1>::new(0.01), mild());
+    check(DOUBLE, Galerkin::<3>::new(0.01), mild());
+    check(DOUBLE, Galerkin::<8>::new(0.01), mild());
+    check(DOUBLE, Galerkin::<3>::new(0.01).frequencies(PER_BODY), mild());
+    check(SPHERICAL, Galerkin::<2>::new(0.01).frequency(OMEGA), SPHERICAL.one_radian());
+    check(SPRING, Galerkin::<4>::new(0.01), SPRING.horizontal());
+    check(DOUBLE, Galerkin::<1>::new(0.01).composed(Composition::suzuki_4()), mild());
+}
+
+#[test]
 fn no_step_with_forces_allocates() {
     let (driven, start) = (DrivenPendulum::STANDARD, DrivenPendulum::STANDARD.horizontal());
     check(driven, Evi::midpoint(0.01), start);
@@ -192,14 +211,6 @@ fn no_step_with_forces_allocates() {
         }
     };
     assert_eq!(allocations(steps), 0);
-}
-
-#[test]
-fn no_step_of_a_composition_allocates() {
-    check(DOUBLE, Evi::midpoint(0.01).composed(Composition::kahan_li_8()), mild());
-    check(DOUBLE, Evi::simpson(0.01).frequencies(PER_BODY).composed(Composition::suzuki_4()), mild());
-    check(SPHERICAL, Rattle::new(0.01).composed(Composition::yoshida_6()), SPHERICAL.one_radian());
-    check(PENDULUM, Evi::simpson(0.01).composed(Composition::triple_jump_4()), SWING);
 }
 
 /// Takes 1,000 steps of the generic path and expects that none allocates.

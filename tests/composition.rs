@@ -4,7 +4,7 @@ use evi_core::baseline::Rattle;
 use evi_core::prelude::*;
 use evi_examples::{DoublePendulum, SphericalPendulum, Start};
 use evi_tests::conservation::{angular_momentum, largest_change, largest_residuals, there_and_back};
-use evi_tests::convergence::{Slope, orders};
+use evi_tests::convergence::check_orders;
 use evi_tests::largest_difference;
 use evi_tests::motions::{
     Motion, charged_spherical_pendulum, gentle_double_pendulum, kapitza_pendulum,
@@ -23,36 +23,6 @@ fn swing() -> (DoublePendulum, Start<4>) {
 mod order {
     use super::*;
 
-    /// Slopes over a factor of two in step size carry the next terms of the error expansion, which in compositions of many stages have
-    /// large coefficients; 0.29 measured, 0.1 mostly.
-    const TOLERANCE: f64 = 0.3;
-
-    #[track_caller]
-    fn check_slope(quantity: &str, slope: Slope, order: f64) {
-        let Slope { order: observed, points, window } = slope;
-        println!(
-            "{}: {quantity} {observed:.3} from {points} points, {:.1e} to {:.1e}",
-            core::panic::Location::caller(),
-            window[0],
-            window[1]
-        );
-        assert!((observed - order).abs() <= TOLERANCE, "order of {quantity} is {observed:.3}, not {order}");
-    }
-
-    /// Orders of `q`, `v`, the recovered multipliers and `H`, on step sizes that shrink by 1.15.
-    #[track_caller]
-    fn check<S, F>(motion: &Motion<S>, coarsest: u32, scheme: impl Fn(f64) -> F, order: f64)
-    where
-        S: MechanicalSystem + Clone,
-        F: Scheme<S>,
-    {
-        let orders = orders(motion, coarsest, 1.15, scheme);
-        check_slope("q", orders.q, order);
-        check_slope("v", orders.v, order);
-        orders.multipliers.iter().for_each(|slope| check_slope("multipliers", *slope, order));
-        orders.energy.iter().for_each(|slope| check_slope("H", *slope, order));
-    }
-
     /// Every composition of one base, from about as many steps of the base on.
     #[track_caller]
     fn check_all<S, B>(motion: &Motion<S>, coarsest: u32, base: impl Fn(f64) -> B)
@@ -60,11 +30,11 @@ mod order {
         S: MechanicalSystem + Clone,
         B: Symmetric + Scheme<S>,
     {
-        check(motion, coarsest, |h| base(h).composed(Composition::triple_jump_4()), 4.0);
-        check(motion, coarsest / 3, |h| base(h).composed(Composition::suzuki_4()), 4.0);
-        check(motion, coarsest / 2, |h| base(h).composed(Composition::yoshida_6()), 6.0);
-        check(motion, coarsest / 3, |h| base(h).composed(Composition::kahan_li_6()), 6.0);
-        check(motion, coarsest / 10, |h| base(h).composed(Composition::kahan_li_8()), 8.0);
+        check_orders(motion, coarsest, |h| base(h).composed(Composition::triple_jump_4()), 4.0);
+        check_orders(motion, coarsest / 3, |h| base(h).composed(Composition::suzuki_4()), 4.0);
+        check_orders(motion, coarsest / 2, |h| base(h).composed(Composition::yoshida_6()), 6.0);
+        check_orders(motion, coarsest / 3, |h| base(h).composed(Composition::kahan_li_6()), 6.0);
+        check_orders(motion, coarsest / 10, |h| base(h).composed(Composition::kahan_li_8()), 8.0);
     }
 
     #[test]
@@ -119,7 +89,7 @@ mod order {
     #[test]
     fn a_composition_of_a_composition_keeps_its_order() {
         let scheme = |h| Evi::midpoint(h).composed(Composition::suzuki_4()).composed(Composition::suzuki_4());
-        check(&gentle_double_pendulum(), 20, scheme, 4.0);
+        check_orders(&gentle_double_pendulum(), 20, scheme, 4.0);
     }
 }
 

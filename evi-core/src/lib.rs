@@ -67,6 +67,8 @@ pub mod __private;
 
 /// What a simulation needs: the derive, schemes, and runs.
 pub mod prelude {
+    #[cfg(feature = "std")]
+    pub use crate::integrator::Galerkin;
     pub use crate::integrator::{
         Composition, Evi, OneStep, Run, Scheme, Simulation, StartError, StepError, Symmetric,
     };

@@ -3,6 +3,8 @@
 //! Every scene is one file: the derive, one paragraph of physics, parameters and starts that the tests, examples and
 //! benchmarks share.
 
+pub mod andrews_squeezer;
+pub mod car_axis;
 pub mod double_pendulum;
 pub mod driven_pendulum;
 pub mod fermi_pasta_ulam;
@@ -12,6 +14,8 @@ pub mod pendulum;
 pub mod spherical_pendulum;
 pub mod stiff_spring_pendulum;
 
+pub use andrews_squeezer::AndrewsSqueezer;
+pub use car_axis::CarAxis;
 pub use double_pendulum::DoublePendulum;
 pub use driven_pendulum::DrivenPendulum;
 pub use fermi_pasta_ulam::FermiPastaUlam;

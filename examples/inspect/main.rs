@@ -9,8 +9,8 @@ use clap::Parser;
 use evi_core::prelude::*;
 use evi_core::report::SystemReport;
 use evi_examples::{
-    DoublePendulum, DrivenPendulum, FermiPastaUlam, HarmonicOscillator, KapitzaPendulum, Pendulum,
-    SphericalPendulum, StiffSpringPendulum,
+    AndrewsSqueezer, CarAxis, DoublePendulum, DrivenPendulum, FermiPastaUlam, HarmonicOscillator,
+    KapitzaPendulum, Pendulum, SphericalPendulum, StiffSpringPendulum,
 };
 
 /// Equations, structure and generated code of a scene of the gallery.
@@ -39,7 +39,9 @@ struct Scene {
     source: Option<&'static str>,
 }
 
-const SCENES: [Scene; 8] = [
+const SCENES: [Scene; 10] = [
+    Scene::of::<AndrewsSqueezer>(),
+    Scene::of::<CarAxis>(),
     Scene::of::<DoublePendulum>(),
     Scene::of::<DrivenPendulum>(),
     Scene::of::<FermiPastaUlam>(),

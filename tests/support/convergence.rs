@@ -152,3 +152,28 @@ where
         energy: known(&errors.energy),
     }
 }
+
+/// Checks the orders of `q`, `v`, the recovered multipliers and `H`, on step sizes that shrink by 1.15.
+///
+/// # Panics
+/// When one is off.
+#[track_caller]
+pub fn check_orders<S, F>(motion: &Motion<S>, coarsest: u32, scheme: impl Fn(f64) -> F, order: f64)
+where
+    S: MechanicalSystem + Clone,
+    F: Scheme<S>,
+{
+    /// Slopes over a factor of two in step size carry the next terms of the error expansion, which in compositions of many stages
+    /// have large coefficients; 0.29 measured, 0.1 mostly.
+    const TOLERANCE: f64 = 0.3;
+    let found = orders(motion, coarsest, 1.15, scheme);
+    let check = |quantity: &str, slope: Slope| {
+        let Slope { order: observed, points, window: [smallest, largest] } = slope;
+        println!("{quantity} {observed:.3} from {points} points, {smallest:.1e} to {largest:.1e}");
+        assert!((observed - order).abs() <= TOLERANCE, "order of {quantity} is {observed:.3}, not {order}");
+    };
+    check("q", found.q);
+    check("v", found.v);
+    found.multipliers.into_iter().for_each(|slope| check("multipliers", slope));
+    found.energy.into_iter().for_each(|slope| check("H", slope));
+}

@@ -3,6 +3,7 @@
 
 pub mod conservation;
 pub mod convergence;
+pub mod galerkin;
 pub mod matrix_action;
 pub mod motions;
 pub mod references;

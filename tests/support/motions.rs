@@ -139,9 +139,17 @@ pub fn charged_particle() -> Motion<ChargedParticle> {
 
 /// Gyroscopic coupling and a constraint.
 pub fn charged_spherical_pendulum() -> Motion<ChargedSphericalPendulum> {
+    charged_spherical_pendulum_until(1.5)
+}
+
+/// The same for a longer time, so that the large steps of the highest orders are many enough to show a slope.
+pub fn long_charged_spherical_pendulum() -> Motion<ChargedSphericalPendulum> {
+    charged_spherical_pendulum_until(4.0)
+}
+
+fn charged_spherical_pendulum_until(t: f64) -> Motion<ChargedSphericalPendulum> {
     let system = ChargedSphericalPendulum::STANDARD;
     let start = system.one_radian();
-    let t = 1.5;
     let acceleration = |_, q: &[f64; 3], v: &[f64; 3]| system.acceleration(q, v);
     let (q, v) = extrapolate_by_hand(acceleration, (start.q, start.v), t, REFERENCE_STEPS);
     Motion::new(system, start, t, (&q, &v), 50)

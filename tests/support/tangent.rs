@@ -73,6 +73,11 @@ impl ConstraintDerivatives {
         Self { jacobian, curvatures }
     }
 
+    /// `G`.
+    pub const fn jacobian(&self) -> &DMatrix<f64> {
+        &self.jacobian
+    }
+
     /// `Σ_c x_c ∂²φ_c/∂q²`.
     pub fn weighted_curvature(&self, x: &DVector<f64>) -> DMatrix<f64> {
         let n = self.jacobian.ncols();
@@ -145,26 +150,41 @@ pub trait DiscreteAction {
         // p⁻ = D₂L_d;  ∂L/∂v + G₁ᵀ N = p⁻, G₁ v₁ = 0: the derivatives of v₁, and of p₁ = ∂L/∂v.
         let dp_minus =
             blocks(&d21, &DMatrix::zeros(n, n), &DMatrix::zeros(0, n), &DMatrix::zeros(0, n)) + d22 * &dq1;
-        let impulse = at_end.impulse(&(d2 - vector(end.p())), scale);
-        let velocity = vector(end.v());
-        let state = [q1, end.v().as_ref()].concat();
-        let t = HyperDual64::from(end.t());
-        let (_, hessian) = derivatives(&state, |state| system.lagrangian(t, &state[..n], &state[n..]));
-        let (l_vq, l_vv) =
-            (hessian.view((n, 0), (n, n)).into_owned(), hessian.view((n, n), (n, n)).into_owned());
-        let kkt = blocks(&l_vv, &at_end.jacobian.transpose(), &at_end.jacobian, &zero);
-        let momentum_rows = dp_minus - (&l_vq + at_end.weighted_curvature(&impulse)) * &dq1;
-        let constraint_rows = -at_end.rate_gradient(&velocity) * &dq1;
-        let mut inputs = DMatrix::zeros(n + m, 2 * n);
-        inputs.rows_mut(0, n).copy_from(&momentum_rows);
-        inputs.rows_mut(n, m).copy_from(&constraint_rows);
-        let dv1 = kkt.lu().solve(&inputs).expect("a regular mass matrix").rows(0, n).into_owned();
-        let dp1 = l_vq * &dq1 + l_vv * dv1;
-        let mut tangent_map = DMatrix::zeros(2 * n, 2 * n);
-        tangent_map.rows_mut(0, n).copy_from(&dq1);
-        tangent_map.rows_mut(n, n).copy_from(&dp1);
-        tangent_map
+        end_tangent_map(system, end, (&dq1, &dp_minus), &d2, scale)
     }
+}
+
+/// `DΨ` of a step that ends at `end` with the momentum `p⁻` before its projection, from the derivatives of `q₁` and `p⁻`.
+#[track_caller]
+pub fn end_tangent_map<S: MechanicalSystem + GenericSystem>(
+    system: &S,
+    end: &State<S>,
+    (dq1, dp_minus): (&DMatrix<f64>, &DMatrix<f64>),
+    p_minus: &DVector<f64>,
+    scale: f64,
+) -> DMatrix<f64> {
+    let (n, m) = (S::N_COORDINATES, S::N_CONSTRAINTS);
+    let q1 = end.q().as_ref();
+    let at_end = ConstraintDerivatives::of(system, end.t(), q1);
+    let impulse = at_end.impulse(&(p_minus - vector(end.p())), scale);
+    let velocity = vector(end.v());
+    let state = [q1, end.v().as_ref()].concat();
+    let t = HyperDual64::from(end.t());
+    let (_, hessian) = derivatives(&state, |state| system.lagrangian(t, &state[..n], &state[n..]));
+    let (l_vq, l_vv) = (hessian.view((n, 0), (n, n)).into_owned(), hessian.view((n, n), (n, n)).into_owned());
+    let zero = DMatrix::zeros(m, m);
+    let kkt = blocks(&l_vv, &at_end.jacobian.transpose(), &at_end.jacobian, &zero);
+    let momentum_rows = dp_minus - (&l_vq + at_end.weighted_curvature(&impulse)) * dq1;
+    let constraint_rows = -at_end.rate_gradient(&velocity) * dq1;
+    let mut inputs = DMatrix::zeros(n + m, 2 * n);
+    inputs.rows_mut(0, n).copy_from(&momentum_rows);
+    inputs.rows_mut(n, m).copy_from(&constraint_rows);
+    let dv1 = kkt.lu().solve(&inputs).expect("a regular mass matrix").rows(0, n).into_owned();
+    let dp1 = l_vq * dq1 + l_vv * dv1;
+    let mut tangent_map = DMatrix::zeros(2 * n, 2 * n);
+    tangent_map.rows_mut(0, n).copy_from(dq1);
+    tangent_map.rows_mut(n, n).copy_from(&dp1);
+    tangent_map
 }
 
 /// The discrete Lagrangian of a scheme, as a formula: nodes, weights, and curves per coordinate.

@@ -7,7 +7,7 @@
 
 use nalgebra::DMatrix;
 
-use crate::linear::{SingularMatrix, checked_pivot_ratio, largest_magnitude, reciprocal_power_of_two};
+use crate::linear::{InPlaceLu, SingularMatrix, largest_magnitude, reciprocal_power_of_two};
 
 /// A matrix being assembled, or its factors after [`factor`](Self::factor).
 pub(super) struct Kkt {
@@ -16,11 +16,7 @@ pub(super) struct Kkt {
     pub(super) matrix: DMatrix<f64>,
     /// The diagonal `D` of the scaled matrix `D K D`.
     scale: Vec<f64>,
-    /// Row that was swapped with row `k` before column `k` was eliminated.
-    swaps: Vec<usize>,
-    /// `1/Uₖₖ`: one division per column.
-    inverse_pivots: Vec<f64>,
-    pivot_ratio: f64,
+    factors: InPlaceLu,
 }
 
 impl Kkt {
@@ -30,9 +26,7 @@ impl Kkt {
             n_coordinates,
             matrix: DMatrix::zeros(dimension, dimension),
             scale: vec![1.0; dimension],
-            swaps: vec![0; dimension],
-            inverse_pivots: vec![1.0; dimension],
-            pivot_ratio: 1.0,
+            factors: InPlaceLu::new(dimension),
         }
     }
 
@@ -52,8 +46,7 @@ impl Kkt {
         }
     }
 
-    /// Scales the matrix and overwrites it with its factors `P A = L U`, by columns (Golub & Van Loan, Matrix
-    /// Computations, 4th ed., alg. 3.4.1).
+    /// Scales the matrix and overwrites it with its factors.
     ///
     /// # Errors
     /// [`SingularMatrix`] when the smallest pivot is lost in the round-off of the largest.
@@ -66,58 +59,13 @@ impl Kkt {
                 entries[col * dimension + row] *= self.scale[row] * self.scale[col];
             }
         }
-        for k in 0..dimension {
-            let (pivot_row, pivot) = largest_entry(&entries[k * dimension..(k + 1) * dimension], k);
-            self.swaps[k] = pivot_row;
-            // Exact zero: nothing is left to eliminate in this column; the check of the pivots reports it.
-            if pivot == 0.0 {
-                continue;
-            }
-            if pivot_row != k {
-                for col in 0..dimension {
-                    entries.swap(col * dimension + k, col * dimension + pivot_row);
-                }
-            }
-            let inverse_pivot = 1.0 / pivot;
-            self.inverse_pivots[k] = inverse_pivot;
-            let (head, tail) = entries.split_at_mut((k + 1) * dimension);
-            let multipliers = &mut head[k * dimension + k + 1..];
-            for multiplier in multipliers.iter_mut() {
-                *multiplier *= inverse_pivot;
-            }
-            for column in tail.chunks_exact_mut(dimension) {
-                let top = column[k];
-                for (entry, multiplier) in column[k + 1..].iter_mut().zip(multipliers.iter()) {
-                    *entry -= multiplier * top;
-                }
-            }
-        }
-        self.pivot_ratio = checked_pivot_ratio(dimension, |i| self.matrix[(i, i)])?;
-        Ok(())
+        self.factors.factor(entries)
     }
 
     /// Overwrites the right-hand side with the solution; after [`factor`](Self::factor).
     pub(super) fn solve(&self, rhs: &mut [f64]) {
-        let dimension = self.scale.len();
-        let entries = self.matrix.as_slice();
         self.apply_scale(rhs);
-        // The multipliers of a column are swapped with the rows below it: all swaps come before the substitution.
-        for (k, &pivot_row) in self.swaps.iter().enumerate() {
-            rhs.swap(k, pivot_row);
-        }
-        for k in 0..dimension {
-            let value = rhs[k];
-            for (entry, multiplier) in rhs[k + 1..].iter_mut().zip(&entries[k * dimension + k + 1..]) {
-                *entry -= multiplier * value;
-            }
-        }
-        for k in (0..dimension).rev() {
-            let value = rhs[k] * self.inverse_pivots[k];
-            rhs[k] = value;
-            for (entry, factor) in rhs[..k].iter_mut().zip(&entries[k * dimension..]) {
-                *entry -= factor * value;
-            }
-        }
+        self.factors.solve(self.matrix.as_slice(), rhs);
         self.apply_scale(rhs);
     }
 
@@ -133,7 +81,7 @@ impl Kkt {
 
     /// Smallest pivot over largest.
     pub(super) const fn pivot_ratio(&self) -> f64 {
-        self.pivot_ratio
+        self.factors.pivot_ratio()
     }
 
     fn apply_scale(&self, unknowns: &mut [f64]) {
@@ -159,19 +107,6 @@ impl Kkt {
             self.scale[constraint] = reciprocal_power_of_two(squares.sqrt());
         }
     }
-}
-
-/// Row and value of the largest entry of a column from row `first` on; a NaN counts as the largest, so that it reaches
-/// the pivots.
-fn largest_entry(column: &[f64], first: usize) -> (usize, f64) {
-    let mut largest = first;
-    for row in first + 1..column.len() {
-        let is_smaller = column[row].abs() <= column[largest].abs();
-        if !is_smaller && !column[largest].is_nan() {
-            largest = row;
-        }
-    }
-    (largest, column[largest])
 }
 
 #[cfg(test)]

@@ -132,6 +132,11 @@ impl<const N: usize> Composition<N> {
         Self { fractions }
     }
 
+    /// Where in the step each stage starts: the sums of the fractions before it.
+    fn starts(&self) -> [f64; N] {
+        core::array::from_fn(|stage| self.fractions[..stage].iter().sum())
+    }
+
     /// The fraction of the step that each stage takes, in their order; negative for a stage that goes back in time.
     pub const fn fractions(&self) -> &[f64; N] {
         &self.fractions
@@ -181,7 +186,7 @@ impl<S: MechanicalSystem, B: Symmetric + Scheme<S>, const N: usize> Scheme<S> fo
             Some(error) => Err(error),
             None => {
                 let stages = stages.map(|stage| stage.expect("a stage is prepared or refused"));
-                Ok(ComposedStep { mechanics, stages, h })
+                Ok(ComposedStep { mechanics, stages, starts: self.composition.starts().map(|c| c * h), h })
             }
         }
     }
@@ -191,6 +196,8 @@ impl<S: MechanicalSystem, B: Symmetric + Scheme<S>, const N: usize> Scheme<S> fo
 pub struct ComposedStep<S: MechanicalSystem, M, const N: usize> {
     mechanics: Mechanics<S>,
     stages: [M; N],
+    /// Time from the start of the step to that of each stage.
+    starts: [f64; N],
     h: f64,
 }
 
@@ -206,10 +213,11 @@ impl<S: MechanicalSystem, M: OneStep<S>, const N: usize> OneStep<S> for Composed
     #[inline]
     fn advance(&mut self, state: &mut State<S>, tally: &mut impl Tally) -> Result<(), StepError> {
         let mut reached = state.clone();
-        for stage in &mut self.stages {
+        for (stage, start) in self.stages.iter_mut().zip(&self.starts) {
+            // Not what the stages before have added up: their roundings are felt by constraints that move.
+            reached.t = state.t + start;
             stage.advance(&mut reached, tally)?;
         }
-        // The stages passed time on among themselves; their roundings of it end here.
         reached.t = state.t + self.h;
         *state = reached;
         Ok(())

@@ -7,6 +7,8 @@
 mod composition;
 mod curves;
 mod evi;
+#[cfg(feature = "std")]
+mod galerkin;
 mod matrix_evi;
 mod multipliers;
 mod run;
@@ -17,6 +19,8 @@ mod trajectory;
 pub use crate::newton::{Fallbacks, Statistics, Tally};
 pub use composition::{Composed, ComposedStep, Composition, Symmetric};
 pub use evi::{Evi, EviStep};
+#[cfg(feature = "std")]
+pub use galerkin::{Galerkin, GalerkinStep};
 pub use matrix_evi::{
     LinearisedAlong, LinearisedAt, MatrixEvi, MatrixEviStep, QuadraticModel, StepMode, Stiffness,
 };

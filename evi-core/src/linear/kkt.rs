@@ -109,7 +109,7 @@ impl<S: MechanicalSystem> Kkt<S> {
 
     /// The diagonal `D`: `1/√|Aᵢᵢ|` for a coordinate, `1/‖√A⁻¹ G₀ᵀ eᵢ‖` for a constraint, as powers of two.
     #[inline]
-    fn scale(&self) -> S::PerUnknown<f64> {
+    pub(crate) fn scale(&self) -> S::PerUnknown<f64> {
         let n = S::N_COORDINATES;
         let mut scale = S::PerUnknown::<f64>::from_fn(|_| 1.0);
         let inertia = self.inertia();

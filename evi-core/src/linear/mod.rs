@@ -7,6 +7,8 @@
 mod closed_form;
 mod dense;
 mod elimination;
+#[cfg(feature = "std")]
+mod in_place;
 mod kkt;
 mod pivoted;
 mod symmetric_eigen;
@@ -14,9 +16,10 @@ mod triangular;
 
 pub use closed_form::{Inverse0, Inverse1, Inverse2};
 pub use dense::DenseLu;
-#[cfg(feature = "generic")]
 pub(crate) use dense::checked_pivot_ratio;
 pub use elimination::{Elimination, Guarded, reciprocal_pivot};
+#[cfg(feature = "std")]
+pub(crate) use in_place::InPlaceLu;
 #[cfg(feature = "generic")]
 pub(crate) use kkt::reciprocal_power_of_two;
 pub(crate) use kkt::{FactoredKkt, Kkt, constraint_index, unknowns};

@@ -149,13 +149,17 @@ impl<S: MechanicalSystem> Mechanics<S> {
             Array::from_fn(|c| Array::from_fn(|col| columns[col][c]))
         };
         for row in 0..S::N_COORDINATES {
-            for col in 0..S::N_COORDINATES {
+            for col in (0..=row).filter(|&col| S::STRUCTURE.constraints_curve(row, col)) {
                 // γ is a quadratic polynomial of the velocity: γ(a + b) − γ(a) − γ(b) + γ(0) leaves twice its
                 // bilinear form, without the terms of time. Constraint by constraint, so that small whole numbers
-                // cancel exactly, and in an order that rows and columns may exchange.
+                // cancel exactly.
                 let along_both = curvature(Array::from_fn(|i| unit(i, row) + unit(i, col)));
                 let bilinear = |c: usize| along_both[c] - (along[c][row] + along[c][col]) + at_rest[c];
-                add(row, col, (0..S::N_CONSTRAINTS).map(|c| 0.5 * multipliers[c] * bilinear(c)).sum());
+                let value = (0..S::N_CONSTRAINTS).map(|c| 0.5 * multipliers[c] * bilinear(c)).sum();
+                add(row, col, value);
+                if row != col {
+                    add(col, row, value);
+                }
             }
         }
     }

@@ -10,6 +10,8 @@ mod coordinate_matrix;
 mod coupling;
 mod folded_step;
 mod forces;
+#[cfg(feature = "std")]
+mod galerkin_equations;
 mod impulse_step;
 mod kick_drift_kick;
 mod legendre;
@@ -27,6 +29,8 @@ pub(crate) use coordinate_matrix::{CoordinateMatrix, Rows};
 pub(crate) use coupling::{AsScene, Coupling, Full};
 pub(crate) use folded_step::FoldedStep;
 pub(crate) use forces::{ForceDerivatives, ForcePoint};
+#[cfg(feature = "std")]
+pub(crate) use galerkin_equations::{GalerkinAction, Points};
 pub(crate) use impulse_step::ImpulseStep;
 pub(crate) use kick_drift_kick::KickDriftKick;
 pub(crate) use legendre::ConstantLegendre;
@@ -60,6 +64,19 @@ impl<S: MechanicalSystem> Mechanics<S> {
     /// Folds the parameters of `system` into the constants of its equations.
     pub fn new(system: &S) -> Self {
         Self { constants: S::constants(&system.parameters()) }
+    }
+
+    /// Powers of two that bring the unknowns of a step to one unit: `1/√Mᵢᵢ` for a coordinate, `1/‖√M⁻¹ G_c‖` for a constraint.
+    #[cfg(feature = "std")]
+    pub(crate) fn unit_scale(
+        &self,
+        t: f64,
+        q: &S::PerCoordinate<f64>,
+        v: &S::PerCoordinate<f64>,
+    ) -> S::PerUnknown<f64> {
+        let (_, hessian) = S::lagrangian_derivatives(&self.constants, t, q, v);
+        let (_, jacobian) = S::constraint_derivatives(&self.constants, t, q);
+        self.mass_kkt(hessian.as_ref(), jacobian.as_ref()).scale()
     }
 
     /// The mass matrix of a scene in which it is constant.

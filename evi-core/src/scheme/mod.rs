@@ -12,6 +12,7 @@ mod frequency;
 mod growth;
 mod mode;
 mod mollifier;
+mod nodal;
 mod quadrature;
 mod scene_frequencies;
 
@@ -28,6 +29,8 @@ pub use frequency::Frequency;
 pub use growth::growth_rate;
 pub(crate) use mode::ModeFlow;
 pub use mollifier::Mollifier;
+pub(crate) use nodal::LobattoNodes;
+pub use nodal::{MOST_INTERVALS, NodalCurves, NodalTable, NodalTables};
 pub use quadrature::{Quadrature, QuadratureError};
 pub use scene_frequencies::{SceneFrequencies, SceneTable};
 
@@ -74,6 +77,31 @@ pub enum SchemeError {
         phase: f64,
         /// `Σ wⱼ (−h g₁'(cⱼ)) (h g₂'(cⱼ))`.
         kinetic_coefficient: f64,
+    },
+    /// `ω h` is so large that the curve oscillates between the nodes of a step.
+    #[error(
+        "the frequency of coordinate {coordinate} oscillates between the nodes: |ω h| = {phase}, at most {limit}"
+    )]
+    UnresolvedFrequency {
+        /// Index of the coordinate.
+        coordinate: usize,
+        /// `ω h`, or the rate times `h` of a hyperbolic function.
+        phase: f64,
+        /// The largest that is accepted.
+        limit: f64,
+    },
+    /// At this `ω h` the functions of a curve do not determine it by its points.
+    #[error(
+        "the points of a step do not determine the curve of coordinate {coordinate}: the determinant is \
+         {determinant:e} at |ω h| = {phase}, and 1 for small steps. Choose a smaller ω h"
+    )]
+    IndeterminateCurve {
+        /// Index of the coordinate.
+        coordinate: usize,
+        /// `ω h`, or the rate times `h` of a hyperbolic function.
+        phase: f64,
+        /// Determinant of the interpolation relative to that at `ω = 0`; `sin(ω h)/(ω h)` for one interval.
+        determinant: f64,
     },
     /// The frequencies are not one per coordinate.
     #[error("{frequencies} frequencies for {coordinates} coordinates: give one for all, or one each")]

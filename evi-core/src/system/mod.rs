@@ -255,6 +255,26 @@ impl Structure {
             || has_column(self.forces.q, coordinate))
     }
 
+    /// Whether some constraint can have a second derivative with respect to coordinates `i` and `j`: both stand in it, and its gradient
+    /// varies with both.
+    pub const fn constraints_curve(&self, i: usize, j: usize) -> bool {
+        let entries = self.jacobian.q;
+        let mut k = 0;
+        while k < entries.len() {
+            let mut l = 0;
+            while l < entries.len() {
+                let (first, second) = (&entries[k], &entries[l]);
+                let in_one = first.row == second.row && first.col == i && second.col == j;
+                if in_one && first.is_varying() && second.is_varying() {
+                    return true;
+                }
+                l += 1;
+            }
+            k += 1;
+        }
+        false
+    }
+
     /// Whether neither `L` nor `φ` nor a force depends on time.
     pub const fn is_autonomous(&self) -> bool {
         !(self.lagrangian.on_t || self.constraints.on_t || self.forces.on.on_t)
@@ -369,6 +389,11 @@ pub struct Entry {
 }
 
 impl Entry {
+    /// Whether a kernel computes it.
+    pub const fn is_varying(&self) -> bool {
+        matches!(self.value, EntryValue::Varying(_))
+    }
+
     /// The entry's value, from the scene's constants or from what its kernel returned.
     #[inline]
     pub fn value<T: Copy>(&self, constants: &[T], varying: &[T]) -> T {

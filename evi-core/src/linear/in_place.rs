@@ -1,0 +1,102 @@
+//! Elimination with partial pivoting in place, for matrices of a size known at run time.
+//!
+//! In: the entries of a square matrix by columns, in storage of the caller's. Out: its factors in the same place.
+
+use super::{SingularMatrix, checked_pivot_ratio};
+
+/// `P A = L U` by columns (Golub & Van Loan, Matrix Computations, 4th ed., alg. 3.4.1); what belongs to the factors beside their
+/// entries.
+pub(crate) struct InPlaceLu {
+    /// Row that was swapped with row `k` before column `k` was eliminated.
+    swaps: Vec<usize>,
+    /// `1/Uₖₖ`: one division per column.
+    inverse_pivots: Vec<f64>,
+    pivot_ratio: f64,
+}
+
+impl InPlaceLu {
+    /// For matrices of `dimension` rows.
+    pub(crate) fn new(dimension: usize) -> Self {
+        Self { swaps: vec![0; dimension], inverse_pivots: vec![1.0; dimension], pivot_ratio: 1.0 }
+    }
+
+    /// Overwrites the matrix with its factors.
+    ///
+    /// # Errors
+    /// [`SingularMatrix`] when the smallest pivot is lost in the round-off of the largest.
+    pub(crate) fn factor(&mut self, entries: &mut [f64]) -> Result<(), SingularMatrix> {
+        let dimension = self.swaps.len();
+        for k in 0..dimension {
+            let (pivot_row, pivot) = largest_entry(&entries[k * dimension..(k + 1) * dimension], k);
+            self.swaps[k] = pivot_row;
+            // Exact zero: nothing is left to eliminate in this column; the check of the pivots reports it.
+            if pivot == 0.0 {
+                continue;
+            }
+            if pivot_row != k {
+                for col in 0..dimension {
+                    entries.swap(col * dimension + k, col * dimension + pivot_row);
+                }
+            }
+            let inverse_pivot = 1.0 / pivot;
+            self.inverse_pivots[k] = inverse_pivot;
+            let (head, tail) = entries.split_at_mut((k + 1) * dimension);
+            let multipliers = &mut head[k * dimension + k + 1..];
+            for multiplier in multipliers.iter_mut() {
+                *multiplier *= inverse_pivot;
+            }
+            for column in tail.chunks_exact_mut(dimension) {
+                let top = column[k];
+                // Where the matrix has blocks of zeros, half of the columns.
+                if top == 0.0 {
+                    continue;
+                }
+                for (entry, multiplier) in column[k + 1..].iter_mut().zip(multipliers.iter()) {
+                    *entry -= multiplier * top;
+                }
+            }
+        }
+        self.pivot_ratio = checked_pivot_ratio(dimension, |i| entries[i * dimension + i])?;
+        Ok(())
+    }
+
+    /// Overwrites the right-hand side with the solution; `entries` are the factors.
+    pub(crate) fn solve(&self, entries: &[f64], rhs: &mut [f64]) {
+        let dimension = self.swaps.len();
+        // The multipliers of a column are swapped with the rows below it: all swaps come before the substitution.
+        for (k, &pivot_row) in self.swaps.iter().enumerate() {
+            rhs.swap(k, pivot_row);
+        }
+        for k in 0..dimension {
+            let value = rhs[k];
+            for (entry, multiplier) in rhs[k + 1..].iter_mut().zip(&entries[k * dimension + k + 1..]) {
+                *entry -= multiplier * value;
+            }
+        }
+        for k in (0..dimension).rev() {
+            let value = rhs[k] * self.inverse_pivots[k];
+            rhs[k] = value;
+            for (entry, factor) in rhs[..k].iter_mut().zip(&entries[k * dimension..]) {
+                *entry -= factor * value;
+            }
+        }
+    }
+
+    /// Smallest pivot over largest.
+    pub(crate) const fn pivot_ratio(&self) -> f64 {
+        self.pivot_ratio
+    }
+}
+
+/// Row and value of the largest entry of a column from row `first` on; a NaN counts as the largest, so that it reaches
+/// the pivots.
+fn largest_entry(column: &[f64], first: usize) -> (usize, f64) {
+    let mut largest = first;
+    for row in first + 1..column.len() {
+        let is_smaller = column[row].abs() <= column[largest].abs();
+        if !is_smaller && !column[largest].is_nan() {
+            largest = row;
+        }
+    }
+    (largest, column[largest])
+}
