@@ -6,7 +6,8 @@ use super::{IterationFailure, OneStep, Scheme, StepError, Symmetric};
 use crate::array::Array;
 use crate::linear::{constraint_index, largest_magnitude};
 use crate::mechanics::{
-    ConstantLegendre, DiscreteLagrangian, FoldedStep, Mechanics, Projected, ProjectionError, State, StepStart,
+    ConstantLegendre, DiscreteLagrangian, FoldedStep, LeapfrogStep, Mechanics, Projected, ProjectionError,
+    State, StepStart,
 };
 use crate::newton::{self, Converged, Tally};
 use crate::scheme::{
@@ -132,9 +133,15 @@ impl<S: MechanicalSystem, const K: usize, F: Interpolant<S>> Scheme<S> for Evi<K
         let action = DiscreteLagrangian::new(mechanics, table, quadrature, h);
         // Where M or A is singular, the constraints are needed to determine the motion: the general step uses them.
         let folded = if FoldedStep::<S, F>::EXISTS { FoldedStep::new(&action).ok() } else { None };
+        let leapfrog = if EviStep::<S, F, K>::MAY_LEAP && quadrature.is_trapezoid() {
+            LeapfrogStep::new(&action.mechanics, h).ok()
+        } else {
+            None
+        };
         let legendre =
             if ConstantLegendre::<S>::EXISTS { ConstantLegendre::new(&action.mechanics).ok() } else { None };
-        Ok(EviStep { action, folded: folded.map(MultiplierStep::new), legendre })
+        let (folded, leapfrog) = (folded.map(MultiplierStep::new), leapfrog.map(MultiplierStep::new));
+        Ok(EviStep { action, folded, leapfrog, legendre })
     }
 }
 
@@ -143,6 +150,8 @@ pub struct EviStep<S: MechanicalSystem, F: Interpolant<S>, const K: usize> {
     action: DiscreteLagrangian<S, F::Table<K>, K>,
     /// The step of a quadratic Lagrangian.
     folded: Option<MultiplierStep<S, FoldedStep<S, F>>>,
+    /// The step of a potential that acts at the ends alone.
+    leapfrog: Option<MultiplierStep<S, LeapfrogStep<S>>>,
     /// The Legendre transform of a constant mass matrix.
     legendre: Option<ConstantLegendre<S>>,
 }
@@ -166,6 +175,11 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> OneStep<S> for EviS
         {
             return folded.advance(&self.action.mechanics, self.action.h(), state, tally);
         }
+        if Self::MAY_LEAP
+            && let Some(leapfrog) = &mut self.leapfrog
+        {
+            return leapfrog.advance(&self.action.mechanics, self.action.h(), state, tally);
+        }
         let h = self.action.h();
         let start_of_curve = Array::from_fn(|i| h * state.v[i]);
         let (difference, impulse) =
@@ -181,6 +195,10 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> OneStep<S> for EviS
 }
 
 impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
+    /// Whether two nodes on the curves of `F` can make a leapfrog step that is not folded.
+    const MAY_LEAP: bool =
+        K == 2 && F::IS_STRAIGHT && LeapfrogStep::<S>::EXISTS && !FoldedStep::<S, F>::EXISTS;
+
     /// The two-step view: `q_next` from two consecutive configurations, the first at time `t_prev`.
     ///
     /// Solves `D₂L_d(q_prev, q_curr) + f⁺ + D₁L_d(q_curr, q_next) + f⁻ − h Gᵀ(q_curr) λ = 0`, `φ(q_next) = 0`; for scenes
