@@ -4,6 +4,7 @@
 //! [`OneStep`] map that holds everything that is constant for the run. A [`Simulation`] joins a scene with a scheme;
 //! a [`Run`] is a simulation at a state.
 
+mod compensated;
 mod composition;
 mod curves;
 mod evi;
@@ -17,6 +18,7 @@ mod simulation;
 mod trajectory;
 
 pub use crate::newton::{Fallbacks, Statistics, Tally};
+pub use compensated::{Compensable, CompensableStep, Compensated, CompensatedStep};
 pub use composition::{Composed, ComposedStep, Composition, Symmetric};
 pub use evi::{Evi, EviStep};
 #[cfg(feature = "std")]
