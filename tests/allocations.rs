@@ -192,6 +192,14 @@ fn no_step_of_a_galerkin_integrator_allocates() {
 }
 
 #[test]
+fn no_compensated_step_allocates() {
+    check(DOUBLE, Evi::midpoint(0.01).compensated(), mild());
+    check(DOUBLE, Evi::midpoint(0.01).composed(Composition::kahan_li_8()).compensated(), mild());
+    check(DOUBLE, Galerkin::<3>::new(0.01).compensated(), mild());
+    check(SPRING, Evi::simpson(0.01).compensated(), SPRING.horizontal());
+}
+
+#[test]
 fn no_step_with_forces_allocates() {
     let (driven, start) = (DrivenPendulum::STANDARD, DrivenPendulum::STANDARD.horizontal());
     check(driven, Evi::midpoint(0.01), start);

@@ -70,7 +70,7 @@ pub mod prelude {
     #[cfg(feature = "std")]
     pub use crate::integrator::Galerkin;
     pub use crate::integrator::{
-        Composition, Evi, OneStep, Run, Scheme, Simulation, StartError, StepError, Symmetric,
+        Compensable, Composition, Evi, OneStep, Run, Scheme, Simulation, StartError, StepError, Symmetric,
     };
     pub use crate::mechanics::State;
     pub use crate::scheme::{Frequency, Mollifier, Quadrature, SchemeError};

@@ -39,6 +39,22 @@ fn that_are_piecewise_constant_keep_the_order_of_the_method() {
     check_slope("Simpson", &h, &simpson, 2.0);
     let (h, kutta) = errors(Rk4::new);
     check_slope("RK4", &h, &kutta, 4.0);
+    let (h, galerkin) = errors(Galerkin::<2>::new);
+    check_slope("Galerkin", &h, &galerkin, 4.0);
+}
+
+#[test]
+fn that_are_no_numbers_are_refused_by_name() {
+    for value in [f64::NAN, f64::INFINITY] {
+        let mut run = Simulation::new(SYSTEM, Evi::midpoint(0.1)).start([1.0], [0.0]).expect("a start");
+        run.set_inputs([value]);
+        let before = run.state().clone();
+        let error = run.advance().expect_err("not a number");
+        let StepError::Input { name, value: reported } = error else { panic!("{error:?}") };
+        assert_eq!((name, reported.to_bits()), (DampedOscillator::INPUTS[0], value.to_bits()));
+        assert!(error.to_string().contains(name), "{error}");
+        assert_eq!((run.steps(), run.state().q()), (0, before.q()));
+    }
 }
 
 /// A free mass under constant pushes moves on parabolas, which straight curves meet at their ends.

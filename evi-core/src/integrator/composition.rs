@@ -4,8 +4,8 @@
 //! scheme of the same step size, `Ψ_{γ_s h} ∘ … ∘ Ψ_{γ_1 h}`. Whatever the base keeps (symplectic form, momentum maps, constraints) the
 //! composition keeps. Some fractions are negative: those stages go back in time.
 
-use super::{OneStep, Scheme, StepError, Tally};
-use crate::mechanics::{Mechanics, State};
+use super::{Compensable, CompensableStep, OneStep, Scheme, StepError, Tally};
+use crate::mechanics::{LostDigits, Mechanics, State};
 use crate::scheme::SchemeError;
 use crate::system::MechanicalSystem;
 
@@ -164,6 +164,8 @@ impl<B: Symmetric, const N: usize> Symmetric for Composed<B, N> {
     }
 }
 
+impl<B: Compensable, const N: usize> Compensable for Composed<B, N> {}
+
 impl<S: MechanicalSystem, B: Symmetric + Scheme<S>, const N: usize> Scheme<S> for Composed<B, N> {
     type Step = ComposedStep<S, B::Step, N>;
 
@@ -212,11 +214,42 @@ impl<S: MechanicalSystem, M: OneStep<S>, const N: usize> OneStep<S> for Composed
 
     #[inline]
     fn advance(&mut self, state: &mut State<S>, tally: &mut impl Tally) -> Result<(), StepError> {
+        self.take_stages(state, |stage, reached| stage.advance(reached, tally))
+    }
+}
+
+impl<S: MechanicalSystem, M: CompensableStep<S>, const N: usize> CompensableStep<S>
+    for ComposedStep<S, M, N>
+{
+    #[inline]
+    fn advance_compensated(
+        &mut self,
+        state: &mut State<S>,
+        lost: &mut LostDigits<S>,
+        tally: &mut impl Tally,
+    ) -> Result<(), StepError> {
+        let mut lost_so_far = lost.clone();
+        self.take_stages(state, |stage, reached| {
+            stage.advance_compensated(reached, &mut lost_so_far, tally)
+        })?;
+        *lost = lost_so_far;
+        Ok(())
+    }
+}
+
+impl<S: MechanicalSystem, M, const N: usize> ComposedStep<S, M, N> {
+    /// Overwrites `state` with where the stages lead one after the other.
+    #[inline(always)]
+    fn take_stages(
+        &mut self,
+        state: &mut State<S>,
+        mut take: impl FnMut(&mut M, &mut State<S>) -> Result<(), StepError>,
+    ) -> Result<(), StepError> {
         let mut reached = state.clone();
         for (stage, start) in self.stages.iter_mut().zip(&self.starts) {
             // Not what the stages before have added up: their roundings are felt by constraints that move.
             reached.t = state.t + start;
-            stage.advance(&mut reached, tally)?;
+            take(stage, &mut reached)?;
         }
         reached.t = state.t + self.h;
         *state = reached;

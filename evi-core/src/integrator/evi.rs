@@ -1,13 +1,15 @@
 //! Exponential variational integrators.
 
+use core::borrow::Borrow;
+
 use super::curves::check_soft_coordinates;
 use super::multipliers::MultiplierStep;
-use super::{IterationFailure, OneStep, Scheme, StepError, Symmetric};
+use super::{Compensable, CompensableStep, IterationFailure, OneStep, Scheme, StepError, Symmetric};
 use crate::array::Array;
 use crate::linear::{constraint_index, largest_magnitude};
 use crate::mechanics::{
-    ConstantLegendre, DiscreteLagrangian, FoldedStep, LeapfrogStep, Mechanics, Projected, ProjectionError,
-    State, StepStart,
+    ConstantLegendre, DiscreteLagrangian, Dropped, FoldedStep, LeapfrogStep, Lost, LostDigits, Mechanics,
+    ProjectionError, RoundOff, State, StepStart, Sum,
 };
 use crate::newton::{self, Converged, Tally};
 use crate::scheme::{
@@ -120,6 +122,8 @@ impl<const K: usize, F: Clone> Symmetric for Evi<K, F> {
     }
 }
 
+impl<const K: usize, F> Compensable for Evi<K, F> {}
+
 impl<S: MechanicalSystem, const K: usize, F: Interpolant<S>> Scheme<S> for Evi<K, F> {
     type Step = EviStep<S, F, K>;
 
@@ -170,27 +174,21 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> OneStep<S> for EviS
 
     #[inline]
     fn advance(&mut self, state: &mut State<S>, tally: &mut impl Tally) -> Result<(), StepError> {
-        if FoldedStep::<S, F>::EXISTS
-            && let Some(folded) = &mut self.folded
-        {
-            return folded.advance(&self.action.mechanics, self.action.h(), state, tally);
-        }
-        if Self::MAY_LEAP
-            && let Some(leapfrog) = &mut self.leapfrog
-        {
-            return leapfrog.advance(&self.action.mechanics, self.action.h(), state, tally);
-        }
-        let h = self.action.h();
-        let start_of_curve = Array::from_fn(|i| h * state.v[i]);
-        let (difference, impulse) =
-            self.solve(state.t, &state.q, &state.p, &state.inputs, start_of_curve, tally)?;
-        let t = state.t + h;
-        let q = Array::from_fn(|i| state.q[i] + difference[i]);
-        let momentum = self.action.end_momentum(state.t, &state.q, &difference, &state.inputs);
-        let Projected { v, p } = self
-            .project(t, &q, momentum, &difference, &impulse, tally)
-            .map_err(|cause| StepError::Projection { t, cause })?;
-        state.replace(t, q, v, p)
+        self.advance_with(state, Dropped, tally).map(drop)
+    }
+}
+
+impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> CompensableStep<S> for EviStep<S, F, K> {
+    #[inline]
+    fn advance_compensated(
+        &mut self,
+        state: &mut State<S>,
+        lost: &mut LostDigits<S>,
+        tally: &mut impl Tally,
+    ) -> Result<(), StepError> {
+        let [q, p] = self.advance_with(state, &*lost, tally)?;
+        *lost = LostDigits::new(q, p);
+        Ok(())
     }
 }
 
@@ -198,6 +196,42 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
     /// Whether two nodes on the curves of `F` can make a leapfrog step that is not folded.
     const MAY_LEAP: bool =
         K == 2 && F::IS_STRAIGHT && LeapfrogStep::<S>::EXISTS && !FoldedStep::<S, F>::EXISTS;
+
+    #[inline(always)]
+    fn advance_with<R: RoundOff<S>>(
+        &mut self,
+        state: &mut State<S>,
+        round_off: R,
+        tally: &mut impl Tally,
+    ) -> Result<[Lost<S, R>; 2], StepError> {
+        if FoldedStep::<S, F>::EXISTS
+            && let Some(folded) = &mut self.folded
+        {
+            return folded.advance(&self.action.mechanics, self.action.h(), state, round_off, tally);
+        }
+        if Self::MAY_LEAP
+            && let Some(leapfrog) = &mut self.leapfrog
+        {
+            return leapfrog.advance(&self.action.mechanics, self.action.h(), state, round_off, tally);
+        }
+        let h = self.action.h();
+        let start_of_curve = Array::from_fn(|i| h * state.v[i]);
+        let start = StepStart::new(self.mechanics(), state.t, &state.q, &state.p, &state.inputs);
+        let (difference, impulse) = self.solve(&start, start_of_curve, tally)?;
+        let t = state.t + h;
+        let (q, lost_q) = round_off.position(&state.q).plus(&difference).split();
+        let momentum = round_off.end_momentum(
+            &state.p,
+            || self.action.end_momentum(state.t, &state.q, &difference, &state.inputs),
+            || self.action.momentum_gain(&start, &difference, &impulse),
+        );
+        let (v, momentum) = self
+            .project(t, &q, momentum, &difference, &impulse, tally)
+            .map_err(|cause| StepError::Projection { t, cause })?;
+        let (p, lost_p) = momentum.split();
+        state.replace(t, q, v, p)?;
+        Ok([lost_q, lost_p])
+    }
 
     /// The two-step view: `q_next` from two consecutive configurations, the first at time `t_prev`.
     ///
@@ -218,55 +252,55 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
         // The part of this momentum normal to the constraints at q_curr goes into the impulse: no projection needed.
         let momentum = self.action.end_momentum(t_prev, q_prev, &difference, &inputs);
         let t = t_prev + self.action.h();
-        let (difference, _) = self.solve(t, q_curr, &momentum, &inputs, difference, &mut ())?;
+        let start = StepStart::new(self.mechanics(), t, q_curr, &momentum, &inputs);
+        let (difference, _) = self.solve(&start, difference, &mut ())?;
         Ok(Array::from_fn(|i| q_curr[i] + difference[i]))
     }
 
-    /// Removes from `momentum` the impulse that leaves the constraints at the end of a step.
+    /// Removes from `momentum` the impulse that leaves the constraints at the end of a step, and returns the velocity with what is left of it.
     #[inline]
-    fn project(
+    fn project<P: Sum<S>>(
         &self,
         t: f64,
         q: &S::PerCoordinate<f64>,
-        momentum: S::PerCoordinate<f64>,
+        mut momentum: P,
         difference: &S::PerCoordinate<f64>,
         impulse: &S::PerConstraint<f64>,
         tally: &mut impl Tally,
-    ) -> Result<Projected<S>, ProjectionError> {
+    ) -> Result<(S::PerCoordinate<f64>, P), ProjectionError> {
         let (mechanics, h) = (self.mechanics(), self.action.h());
         if ConstantLegendre::<S>::EXISTS
             && let Some(legendre) = &self.legendre
         {
-            if S::N_CONSTRAINTS == 0 {
-                return Ok(Projected { v: legendre.velocity(&momentum), p: momentum });
-            }
-            let (_, jacobian) = S::constraint_derivatives(&mechanics.constants, t, q);
-            let gram = legendre.factor_gram(mechanics, &jacobian, tally)?;
-            let expected = Array::from_fn(|c| impulse[c] / h);
-            return Ok(legendre.project(mechanics, &gram, &jacobian, &expected, momentum));
+            return Ok(if S::N_CONSTRAINTS == 0 {
+                let v = legendre.velocity(momentum.value().borrow());
+                (v, momentum)
+            } else {
+                let (_, jacobian) = S::constraint_derivatives(&mechanics.constants, t, q);
+                let gram = legendre.factor_gram(mechanics, &jacobian, tally)?;
+                let expected = Array::from_fn(|c| impulse[c] / h);
+                legendre.project(mechanics, &gram, &jacobian, &expected, momentum)
+            });
         }
-        mechanics.project_momentum(t, q, &momentum, Array::from_fn(|i| difference[i] / h), tally)
+        let guess = Array::from_fn(|i| difference[i] / h);
+        let v = mechanics.project_momentum(t, q, &mut momentum, guess, tally)?;
+        Ok((v, momentum))
     }
 
-    /// The difference `d = q₁ − q₀` and the impulse `Λ` of the step from `(q, p)`, by Newton's iteration from the guess
+    /// The difference `d = q₁ − q₀` and the impulse `Λ` of the step from `start`, by Newton's iteration from the guess
     /// `difference`.
     #[inline]
     fn solve(
         &self,
-        t: f64,
-        q: &S::PerCoordinate<f64>,
-        p: &S::PerCoordinate<f64>,
-        inputs: &S::PerInput<f64>,
+        start: &StepStart<'_, S>,
         mut difference: S::PerCoordinate<f64>,
         tally: &mut impl Tally,
     ) -> Result<Unknowns<S>, StepError> {
-        let (_, jacobian) = S::constraint_derivatives(&self.mechanics().constants, t, q);
-        let start = StepStart { t, q, p, inputs, jacobian };
         let mut impulse = S::PerConstraint::<f64>::from_fn(|_| 0.0);
         let mut constraint_residual = 0.0;
         let mut smallest_pivot_ratio = 1.0_f64;
         let iteration = newton::iterate(|correction| {
-            let (residual, kkt) = self.action.linearize(&start, &difference, &impulse);
+            let (residual, kkt) = self.action.linearize(start, &difference, &impulse);
             let constraint_rows = residual.as_ref()[S::N_COORDINATES..].iter().copied();
             constraint_residual = largest_magnitude(constraint_rows);
             let kkt = kkt.factor().map_err(|matrix| IterationFailure::Singular { correction, matrix })?;
@@ -282,14 +316,16 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
             for c in 0..S::N_CONSTRAINTS {
                 impulse[c] -= update[constraint_index::<S>(c)];
             }
-            Ok(kkt.relative_length(|i| update[i], |i| q[i].abs() + difference[i].abs()))
+            Ok(kkt.relative_length(|i| update[i], |i| start.q[i].abs() + difference[i].abs()))
         });
         match iteration {
             Ok(Converged { corrections }) => {
                 tally.count_corrections(corrections);
                 Ok((difference, impulse))
             }
-            Err(failure) => Err(IterationFailure::at(failure, t, constraint_residual, smallest_pivot_ratio)),
+            Err(failure) => {
+                Err(IterationFailure::at(failure, start.t, constraint_residual, smallest_pivot_ratio))
+            }
         }
     }
 }

@@ -1,9 +1,11 @@
 //! Galerkin variational integrators: order `2K` in one step with inner points, each of them on the constraints.
 
-use super::{IterationFailure, OneStep, Scheme, StepError, Symmetric, Tally};
+use super::{Compensable, CompensableStep, IterationFailure, OneStep, Scheme, StepError, Symmetric, Tally};
 use crate::array::Array;
 use crate::linear::{InPlaceLu, constraint_index, largest_magnitude};
-use crate::mechanics::{GalerkinAction, Mechanics, Points, Projected, State, relative};
+use crate::mechanics::{
+    Dropped, GalerkinAction, Lost, LostDigits, Mechanics, Points, RoundOff, State, Sum, relative,
+};
 use crate::newton::{self, Converged};
 use crate::scheme::{Frequency, Linear, NodalCurves, NodalTables, SchemeError, checked_step_size};
 use crate::system::MechanicalSystem;
@@ -66,6 +68,8 @@ impl<const K: usize, F: Clone> Symmetric for Galerkin<K, F> {
     }
 }
 
+impl<const K: usize, F> Compensable for Galerkin<K, F> {}
+
 impl<S: MechanicalSystem, const K: usize, F: NodalCurves<S>> Scheme<S> for Galerkin<K, F> {
     type Step = GalerkinStep<S, F, K>;
 
@@ -101,23 +105,46 @@ impl<S: MechanicalSystem, F: NodalCurves<S>, const K: usize> OneStep<S> for Gale
     }
 
     fn advance(&mut self, state: &mut State<S>, tally: &mut impl Tally) -> Result<(), StepError> {
-        let points = self.solve(state, tally)?;
-        let t = state.t + self.action.h();
-        let last = &points.differences[K - 1];
-        let q = Array::from_fn(|i| state.q[i] + last[i]);
-        let momentum = self.action.end_momentum(state, &points);
-        let guess = self.action.velocity(&state.q, &points, K);
-        let Projected { v, p } = self
-            .mechanics()
-            .project_momentum(t, &q, &momentum, guess, tally)
-            .map_err(|cause| StepError::Projection { t, cause })?;
-        state.replace(t, q, v, p)?;
-        self.past = Some(points);
+        self.advance_with(state, Dropped, tally).map(drop)
+    }
+}
+
+impl<S: MechanicalSystem, F: NodalCurves<S>, const K: usize> CompensableStep<S> for GalerkinStep<S, F, K> {
+    fn advance_compensated(
+        &mut self,
+        state: &mut State<S>,
+        lost: &mut LostDigits<S>,
+        tally: &mut impl Tally,
+    ) -> Result<(), StepError> {
+        let [q, p] = self.advance_with(state, &*lost, tally)?;
+        *lost = LostDigits::new(q, p);
         Ok(())
     }
 }
 
 impl<S: MechanicalSystem, F: NodalCurves<S>, const K: usize> GalerkinStep<S, F, K> {
+    #[inline]
+    fn advance_with<R: RoundOff<S>>(
+        &mut self,
+        state: &mut State<S>,
+        round_off: R,
+        tally: &mut impl Tally,
+    ) -> Result<[Lost<S, R>; 2], StepError> {
+        let points = self.solve(state, tally)?;
+        let t = state.t + self.action.h();
+        let (q, lost_q) = round_off.position(&state.q).plus(&points.differences[K - 1]).split();
+        let mut momentum = round_off.momentum(&state.p).plus(&self.action.momentum_gain(state, &points));
+        let guess = self.action.velocity(&state.q, &points, K);
+        let v = self
+            .mechanics()
+            .project_momentum(t, &q, &mut momentum, guess, tally)
+            .map_err(|cause| StepError::Projection { t, cause })?;
+        let (p, lost_p) = momentum.split();
+        state.replace(t, q, v, p)?;
+        self.past = Some(points);
+        Ok([lost_q, lost_p])
+    }
+
     /// The points of the step from `state`: by Newton's iteration from the curve of the last step, continued, where that stays near
     /// the parabola with the acceleration of the state; else, or if it does not converge, from the parabola.
     ///
@@ -144,7 +171,7 @@ impl<S: MechanicalSystem, F: NodalCurves<S>, const K: usize> GalerkinStep<S, F, 
         let (t, h) = (state.t, self.action.h());
         let start = self
             .mechanics()
-            .acceleration(t, &state.q, &state.v)
+            .acceleration_with(t, &state.q, &state.v, &state.inputs)
             .map_err(|matrix| StepError::Singular { t, correction: 0, matrix })?;
         let nodes = &self.action.nodes;
         Ok(Points {

@@ -5,7 +5,7 @@ use super::{Evi, IterationFailure, OneStep, Scheme, StepError, Symmetric, Tally}
 use crate::array::Array;
 use crate::linear::{constraint_index, largest_magnitude};
 use crate::mechanics::{
-    ImpulseStep, MatrixAction, Mechanics, Projected, QuadraticPart, State, StepModes, StepStart,
+    Dropped, ImpulseStep, MatrixAction, Mechanics, QuadraticPart, Rounded, State, StepModes, StepStart,
 };
 use crate::newton::{self, Converged};
 use crate::scheme::{Mollifier, Quadrature, SchemeError, checked_step_size};
@@ -249,7 +249,9 @@ impl<S: MechanicalSystem, const K: usize> OneStep<S> for MatrixEviStep<S, K> {
     #[inline]
     fn advance(&mut self, state: &mut State<S>, tally: &mut impl Tally) -> Result<(), StepError> {
         match &mut self.form {
-            Form::Impulse { mechanics, step, h } => step.advance(mechanics, *h, state, tally),
+            Form::Impulse { mechanics, step, h } => {
+                step.advance(mechanics, *h, state, Dropped, tally).map(drop)
+            }
             Form::General(action) => advance(action, state, tally),
         }
     }
@@ -293,9 +295,10 @@ fn advance<S: MechanicalSystem, const K: usize>(
     let t = state.t + h;
     let q = Array::from_fn(|i| state.q[i] + difference[i]);
     let mean_velocity = Array::from_fn(|i| difference[i] / h);
-    let Projected { v, p } = action
+    let mut momentum = Rounded(momentum);
+    let v = action
         .mechanics
-        .project_momentum(t, &q, &momentum, mean_velocity, tally)
+        .project_momentum(t, &q, &mut momentum, mean_velocity, tally)
         .map_err(|cause| StepError::Projection { t, cause })?;
-    state.replace(t, q, v, p)
+    state.replace(t, q, v, momentum.0)
 }

@@ -4,6 +4,7 @@
 //! [`OneStep`] map that holds everything that is constant for the run. A [`Simulation`] joins a scene with a scheme;
 //! a [`Run`] is a simulation at a state.
 
+mod compensated;
 mod composition;
 mod curves;
 mod evi;
@@ -17,6 +18,7 @@ mod simulation;
 mod trajectory;
 
 pub use crate::newton::{Fallbacks, Statistics, Tally};
+pub use compensated::{Compensable, CompensableStep, Compensated, CompensatedStep};
 pub use composition::{Composed, ComposedStep, Composition, Symmetric};
 pub use evi::{Evi, EviStep};
 #[cfg(feature = "std")]
@@ -106,6 +108,14 @@ pub enum StepError {
         t: f64,
         /// Why.
         cause: ProjectionError,
+    },
+    /// An input is not finite.
+    #[error("the input `{name}` of the step is {value}")]
+    Input {
+        /// The input.
+        name: &'static str,
+        /// Its value.
+        value: f64,
     },
     /// The time to move to is no number of steps away: not finite, or farther than a float counts steps.
     #[error("t = {target} cannot be reached in steps of h = {h}")]

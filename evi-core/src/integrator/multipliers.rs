@@ -4,10 +4,12 @@
 //! `φ(q₁(ℓ)) = 0`, and the state there. From the impulse that the previous steps predict, two corrections with one matrix
 //! `G₁ D G₀ᵀ` do, as a rule; where they do not, Newton's iteration goes on with a fresh matrix for each.
 
+use core::borrow::Borrow;
+
 use super::{IterationFailure, StepError};
 use crate::array::Array;
 use crate::linear::{Factorization, largest_magnitude};
-use crate::mechanics::{Coupling, Directions, KickDriftKick, Mechanics, Projected, State};
+use crate::mechanics::{Coupling, Directions, KickDriftKick, Lost, Mechanics, RoundOff, State, Sum};
 use crate::newton::{self, Progress, Tally};
 use crate::system::MechanicalSystem;
 
@@ -28,13 +30,14 @@ pub(crate) struct MultiplierStep<S: MechanicalSystem, F> {
 const SHORT: f64 = 1.0 / (1_u64 << 40) as f64;
 
 /// The motion of one step as a function of the impulse.
-struct Span<'a, S: MechanicalSystem, F> {
+struct Span<'a, S: MechanicalSystem, F, R> {
     mechanics: &'a Mechanics<S>,
     free: &'a F,
     t_start: f64,
     t_end: f64,
     /// `q₀`.
     start: &'a S::PerCoordinate<f64>,
+    round_off: R,
     /// `D p½`, without constraint forces.
     free_difference: S::PerCoordinate<f64>,
     /// Varying entries of `G₀`.
@@ -44,8 +47,8 @@ struct Span<'a, S: MechanicalSystem, F> {
 }
 
 /// The end of a step on the constraints.
-struct Landing<S: MechanicalSystem> {
-    q: S::PerCoordinate<f64>,
+struct Landing<S: MechanicalSystem, Q> {
+    q: Q,
     impulse: S::PerConstraint<f64>,
     /// Factors of `G M⁻¹ Gᵀ` there.
     gram: S::GramFactors,
@@ -59,39 +62,63 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>> MultiplierStep<S, F> {
         Self { free, predicted: none.clone(), previous: [none.clone(), none.clone(), none] }
     }
 
-    /// Overwrites `state` with the state one step of size `h` later.
+    /// Overwrites `state` with the state one step of size `h` later, and returns what its positions and momenta have lost.
     #[inline(always)]
-    pub(crate) fn advance(
+    pub(crate) fn advance<R: RoundOff<S>>(
         &mut self,
         mechanics: &Mechanics<S>,
         h: f64,
         state: &mut State<S>,
+        round_off: R,
         tally: &mut impl Tally,
-    ) -> Result<(), StepError> {
+    ) -> Result<[Lost<S, R>; 2], StepError> {
         let free = &self.free;
         let t = state.t + h;
-        let mut p = free.kicked_at_start(mechanics, state.t, &state.q, &state.p);
-        let free_difference = free.drift().times(|i| p[i]);
+        let momentum = round_off.momentum(&state.p);
+        let kicked = free.kicked_at_start(mechanics, state.t, &state.q, momentum.terms());
+        let mut momentum = momentum.with(kicked);
+        let half_way = momentum.value().borrow().clone();
+        let free_difference = free.drift().times(|i| half_way[i]);
         if S::N_CONSTRAINTS == 0 {
-            let q = Array::from_fn(|i| state.q[i] + free_difference[i]);
-            p = free.kicked_at_end(mechanics, t, &q, &p);
-            return state.replace(t, q, free.legendre().velocity(&p), p);
+            let (q, lost_q) = round_off.position(&state.q).plus(&free_difference).split();
+            let kicked = free.kicked_at_end(mechanics, t, &q, momentum.terms());
+            let (p, lost_p) = momentum.with(kicked).split();
+            state.replace(t, q, free.legendre().velocity(&p), p)?;
+            return Ok([lost_q, lost_p]);
         }
         let (_, jacobian) = S::constraint_derivatives(&mechanics.constants, state.t, &state.q);
         let directions = mechanics.constraint_directions(&jacobian, free.drift());
         let (t_start, start) = (state.t, &state.q);
-        let span = Span { mechanics, free, t_start, t_end: t, start, free_difference, jacobian, directions };
-        let Landing { q, impulse, gram, corrections } = span.solve(self.predicted.clone(), tally)?;
+        let span = Span {
+            mechanics,
+            free,
+            t_start,
+            t_end: t,
+            start,
+            round_off,
+            free_difference,
+            jacobian,
+            directions,
+        };
+        let Landing { q: position, impulse, gram, corrections } =
+            span.solve(self.predicted.clone(), tally)?;
         tally.count_corrections(corrections);
-        mechanics.subtract_constraint_force(span.jacobian.as_ref(), impulse.as_ref(), p.as_mut());
-        p = free.kicked_at_end(mechanics, t, &q, &p);
+        let (q, lost_q) = position.split();
+        mechanics.subtract_constraint_force(
+            span.jacobian.as_ref(),
+            impulse.as_ref(),
+            momentum.terms_mut().as_mut(),
+        );
+        let kicked = free.kicked_at_end(mechanics, t, &q, momentum.terms());
+        let momentum = momentum.with(kicked);
 
         let (_, jacobian) = S::constraint_derivatives(&mechanics.constants, t, &q);
         let expected = self.expected_end_impulse(&impulse);
-        let Projected { v, p } = free.legendre().project(mechanics, &gram, &jacobian, &expected, p);
+        let (v, momentum) = free.legendre().project(mechanics, &gram, &jacobian, &expected, momentum);
+        let (p, lost_p) = momentum.split();
         state.replace(t, q, v, p)?;
         self.remember(impulse);
-        Ok(())
+        Ok([lost_q, lost_p])
     }
 
     /// The impulse at the end of a step, from that at its start. Averages of the multipliers with the weights `1 − τ` and `τ`,
@@ -111,7 +138,7 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>> MultiplierStep<S, F> {
 }
 
 // Written out, since a derive would demand the same of `S`.
-impl<S: MechanicalSystem, F> Clone for Span<'_, S, F> {
+impl<S: MechanicalSystem, F, R: Copy> Clone for Span<'_, S, F, R> {
     #[inline(always)]
     fn clone(&self) -> Self {
         Self {
@@ -126,7 +153,7 @@ impl<S: MechanicalSystem, F> Clone for Span<'_, S, F> {
 /// Solver with `G₁ D G₀ᵀ`.
 type DriftGram<S, F> = <<F as KickDriftKick<S>>::Coupling as Coupling<S>>::GramFactors;
 
-impl<S: MechanicalSystem, F: KickDriftKick<S>> Span<'_, S, F> {
+impl<S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'_, S, F, R> {
     /// Solves `φ(q₁(ℓ)) = 0` from the guess `impulse`.
     ///
     /// What follows the two corrections takes a copy of `self`, which therefore need not lie in memory until then. The
@@ -137,7 +164,7 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>> Span<'_, S, F> {
         &self,
         mut impulse: S::PerConstraint<f64>,
         tally: &mut impl Tally,
-    ) -> Result<Landing<S>, StepError> {
+    ) -> Result<Landing<S, R::Sum>, StepError> {
         let mut q = self.end(&impulse);
         let (first, jacobian) = self.constraints_at(&q);
         let matrix = self.mechanics.gram_matrix::<F::Coupling>(&jacobian, &self.directions);
@@ -163,10 +190,10 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>> Span<'_, S, F> {
     fn continue_from(
         self,
         [first, second]: [S::PerConstraint<f64>; 2],
-        q: S::PerCoordinate<f64>,
+        q: R::Sum,
         impulse: S::PerConstraint<f64>,
         tally: &mut impl Tally,
-    ) -> Result<Landing<S>, StepError> {
+    ) -> Result<Landing<S, R::Sum>, StepError> {
         let scale = self.scale(&q);
         if is_round_off_next::<S>(&second, &first, &scale) {
             return self.landing(q, impulse, CHORDS, tally);
@@ -183,7 +210,7 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>> Span<'_, S, F> {
     /// Newton's iteration without the history.
     #[cold]
     #[inline(never)]
-    fn solve_anew(self, tally: &mut impl Tally) -> Result<Landing<S>, StepError> {
+    fn solve_anew(self, tally: &mut impl Tally) -> Result<Landing<S, R::Sum>, StepError> {
         let none = S::PerConstraint::<f64>::from_fn(|_| 0.0);
         self.iterate(0, none.clone(), self.end(&none), none, tally)
     }
@@ -191,11 +218,11 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>> Span<'_, S, F> {
     /// The landing at `q`, where `φ = 0`.
     fn landing(
         &self,
-        q: S::PerCoordinate<f64>,
+        q: R::Sum,
         impulse: S::PerConstraint<f64>,
         corrections: usize,
         tally: &mut impl Tally,
-    ) -> Result<Landing<S>, StepError> {
+    ) -> Result<Landing<S, R::Sum>, StepError> {
         let (_, jacobian) = self.constraints_at(&q);
         match self.free.legendre().factor_gram(self.mechanics, &jacobian, tally) {
             Ok(gram) => Ok(Landing { q, impulse, gram, corrections }),
@@ -209,10 +236,10 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>> Span<'_, S, F> {
         &self,
         corrections: usize,
         mut previous: S::PerConstraint<f64>,
-        mut q: S::PerCoordinate<f64>,
+        mut q: R::Sum,
         mut impulse: S::PerConstraint<f64>,
         tally: &mut impl Tally,
-    ) -> Result<Landing<S>, StepError> {
+    ) -> Result<Landing<S, R::Sum>, StepError> {
         let mut progress = Progress::after(relative_length::<S>(&previous, &self.scale(&q)));
         loop {
             let (residual, jacobian) = self.constraints_at(&q);
@@ -251,16 +278,16 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>> Span<'_, S, F> {
 
     /// `φ` and the varying entries of `G` at the end of the step.
     #[inline(always)]
-    fn constraints_at(&self, q: &S::PerCoordinate<f64>) -> (S::PerConstraint<f64>, S::PerJacobianEntry<f64>) {
-        S::constraint_derivatives(&self.mechanics.constants, self.t_end, q)
+    fn constraints_at(&self, q: &R::Sum) -> (S::PerConstraint<f64>, S::PerJacobianEntry<f64>) {
+        S::constraint_derivatives(&self.mechanics.constants, self.t_end, q.value().borrow())
     }
 
     /// `q₁(ℓ) = q₀ − D G₀ᵀ ℓ + d_free`; the difference comes last, since it is known last.
     #[inline(always)]
-    fn end(&self, impulse: &S::PerConstraint<f64>) -> S::PerCoordinate<f64> {
-        let mut end = self.start.clone();
-        subtract::<S, F::Coupling>(&self.directions, impulse, &mut end);
-        Array::from_fn(|i| end[i] + self.free_difference[i])
+    fn end(&self, impulse: &S::PerConstraint<f64>) -> R::Sum {
+        let mut end = self.round_off.position(self.start);
+        subtract::<S, F::Coupling>(&self.directions, impulse, end.terms_mut());
+        end.plus(&self.free_difference)
     }
 
     /// Applies the correction for `residual` to the impulse and to `q = q₁(ℓ)`. The derivative of `φ(q₁(ℓ))` is
@@ -270,12 +297,12 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>> Span<'_, S, F> {
         &self,
         matrix: &DriftGram<S, F>,
         residual: &S::PerConstraint<f64>,
-        q: &mut S::PerCoordinate<f64>,
+        q: &mut R::Sum,
         impulse: &mut S::PerConstraint<f64>,
     ) {
         let mut correction = residual.clone();
         matrix.solve(&mut correction);
-        subtract::<S, F::Coupling>(&self.directions, &correction, q);
+        subtract::<S, F::Coupling>(&self.directions, &correction, q.terms_mut());
         for c in 0..S::N_CONSTRAINTS {
             impulse[c] += correction[c];
         }
@@ -283,8 +310,10 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>> Span<'_, S, F> {
 
     /// What the residuals at `end` are compared with: `Σᵢ |G_ci| rᵢ`, where `rᵢ` adds up the magnitudes of what `q₁` is
     /// found from.
-    fn scale(&self, end: &S::PerCoordinate<f64>) -> S::PerConstraint<f64> {
-        let reach = Array::from_fn(|i| self.start[i].abs() + self.free_difference[i].abs() + end[i].abs());
+    fn scale(&self, end: &R::Sum) -> S::PerConstraint<f64> {
+        let (start, end) = (self.start, end.value());
+        let reach =
+            Array::from_fn(|i| start[i].abs() + self.free_difference[i].abs() + end.borrow()[i].abs());
         self.mechanics.constraint_scale(&self.jacobian, &reach)
     }
 }

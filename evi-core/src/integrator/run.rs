@@ -124,12 +124,25 @@ impl<S: MechanicalSystem, M: OneStep<S>, T: Tally> Run<S, M, T> {
     /// [`StepError`]; the run then stands where it stood.
     #[inline]
     pub fn advance(&mut self) -> Result<&State<S>, StepError> {
+        if S::N_INPUTS > 0 {
+            self.check_inputs()?;
+        }
         self.map.advance(&mut self.state, &mut self.tally)?;
         self.steps += 1;
         // A product, since a sum of 1e6 step sizes loses six digits.
         // The cast of a signed number is one instruction; no run has 2⁶³ steps.
         self.state.t = self.start_time + self.steps as i64 as f64 * self.map.h();
         Ok(&self.state)
+    }
+
+    /// Refuses inputs that are not finite.
+    fn check_inputs(&self) -> Result<(), StepError> {
+        for (name, &value) in S::INPUTS.iter().zip(self.state.inputs.as_ref()) {
+            if !value.is_finite() {
+                return Err(StepError::Input { name, value });
+            }
+        }
+        Ok(())
     }
 
     /// Takes steps until the next one would end beyond `t` by more than half a step.

@@ -174,11 +174,20 @@ where
         sum
     }
 
-    /// The length of `x` relative to that of `reference`; 0 for a vanishing `x`, whatever the reference.
+    /// The length of `x` relative to that of `reference`; 0 for a vanishing `x`, whatever the reference. The sum of two: in the metric
+    /// of the matrix, which is blind to what has no inertia, and of the numbers themselves, which is blind to what has small units.
     #[inline]
     pub(crate) fn relative_length(&self, x: impl Fn(usize) -> f64, reference: impl Fn(usize) -> f64) -> f64 {
-        let length = self.squared_length(x);
-        if length == 0.0 { 0.0 } else { Scalar::sqrt(length / self.squared_length(reference)) }
+        let (mut length, mut reach) = (-0.0, -0.0);
+        for i in 0..S::N_COORDINATES {
+            length += x(i) * x(i);
+            reach += reference(i) * reference(i);
+        }
+        if length == 0.0 {
+            return 0.0;
+        }
+        let metric = self.squared_length(x) / self.squared_length(reference).max(f64::MIN_POSITIVE);
+        Scalar::sqrt(length / reach) + Scalar::sqrt(metric)
     }
 
     /// Smallest pivot over largest.

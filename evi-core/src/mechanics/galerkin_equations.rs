@@ -267,8 +267,8 @@ impl<S: MechanicalSystem, T: NodalTables<K>, const K: usize> GalerkinAction<S, T
         });
     }
 
-    /// `p⁻`, from the balance of momentum.
-    pub(crate) fn end_momentum(&self, start: &State<S>, points: &Points<S, K>) -> S::PerCoordinate<f64> {
+    /// `p⁻ − p₀`, from the balance of momentum.
+    pub(crate) fn momentum_gain(&self, start: &State<S>, points: &Points<S, K>) -> S::PerCoordinate<f64> {
         let h = self.h;
         let constants = &self.mechanics.constants;
         let mut gain = S::PerCoordinate::<f64>::from_fn(|_| 0.0);
@@ -291,6 +291,6 @@ impl<S: MechanicalSystem, T: NodalTables<K>, const K: usize> GalerkinAction<S, T
                     weight * (h * gradient.force[i] + constant_rate * gradient.momentum[i]) - pull[i] / h;
             }
         }
-        Array::from_fn(|i| start.p[i] + gain[i])
+        gain
     }
 }

@@ -1,6 +1,8 @@
 //! The Legendre transform of a scene with a constant mass matrix, `p = M v + a`, inverted once.
 
-use super::{AsScene, CoordinateMatrix, Mechanics, Projected};
+use core::borrow::Borrow;
+
+use super::{AsScene, CoordinateMatrix, Mechanics, Sum};
 use crate::array::Array;
 use crate::linear::{Factorization, SingularMatrix};
 use crate::newton::Tally;
@@ -68,27 +70,31 @@ impl<S: MechanicalSystem> ConstantLegendre<S> {
         Ok(gram)
     }
 
-    /// Removes from the momentum `p` the impulse `Gᵀ N` that leaves the constraints, `G M⁻¹ Gᵀ N = G v + ∂φ/∂t`, with the
-    /// factors of that matrix. `expected` is close to `N`.
+    /// Removes from the `momentum` the impulse `Gᵀ N` that leaves the constraints, `G M⁻¹ Gᵀ N = G v + ∂φ/∂t`, with the
+    /// factors of that matrix, and returns the velocity and the momentum that are left. `expected` is close to `N`.
     ///
     /// Near a turning point `v` is a small difference of large velocities, whose round-off would stay. Without `expected`
     /// they are small as well, but for the slowest motions: these are projected once more.
     #[inline(always)]
-    pub(crate) fn project(
+    pub(crate) fn project<P: Sum<S>>(
         &self,
         mechanics: &Mechanics<S>,
         gram: &S::GramFactors,
         jacobian: &S::PerJacobianEntry<f64>,
         expected: &S::PerConstraint<f64>,
-        mut p: S::PerCoordinate<f64>,
-    ) -> Projected<S> {
-        mechanics.subtract_constraint_force(jacobian.as_ref(), expected.as_ref(), p.as_mut());
-        let removed = self.remove_rest(mechanics, gram, jacobian, &mut p);
-        let mut v = self.velocity(&p);
-        if removed > LARGEST_REST * self.doubled_energy(&p, &v) {
-            v = self.projected_again(mechanics, gram, jacobian, &mut p);
+        mut momentum: P,
+    ) -> (S::PerCoordinate<f64>, P) {
+        mechanics.subtract_constraint_force(
+            jacobian.as_ref(),
+            expected.as_ref(),
+            momentum.terms_mut().as_mut(),
+        );
+        let removed = self.remove_rest(mechanics, gram, jacobian, &mut momentum);
+        let mut v = self.velocity(momentum.value().borrow());
+        if removed > LARGEST_REST * self.doubled_energy(momentum.value().borrow(), &v) {
+            v = self.projected_again(mechanics, gram, jacobian, &mut momentum);
         }
-        Projected { v, p }
+        (v, momentum)
     }
 
     #[cold]
@@ -97,10 +103,10 @@ impl<S: MechanicalSystem> ConstantLegendre<S> {
         mechanics: &Mechanics<S>,
         gram: &S::GramFactors,
         jacobian: &S::PerJacobianEntry<f64>,
-        p: &mut S::PerCoordinate<f64>,
+        momentum: &mut impl Sum<S>,
     ) -> S::PerCoordinate<f64> {
-        self.remove_rest(mechanics, gram, jacobian, p);
-        self.velocity(p)
+        self.remove_rest(mechanics, gram, jacobian, momentum);
+        self.velocity(momentum.value().borrow())
     }
 
     /// Removes what leaves the constraints, and returns twice the kinetic energy that it had.
@@ -110,12 +116,12 @@ impl<S: MechanicalSystem> ConstantLegendre<S> {
         mechanics: &Mechanics<S>,
         gram: &S::GramFactors,
         jacobian: &S::PerJacobianEntry<f64>,
-        p: &mut S::PerCoordinate<f64>,
+        momentum: &mut impl Sum<S>,
     ) -> f64 {
-        let rate = mechanics.constraint_rate(jacobian.as_ref(), &self.velocity(p));
+        let rate = mechanics.constraint_rate(jacobian.as_ref(), &self.velocity(momentum.value().borrow()));
         let mut rest = rate.clone();
         gram.solve(&mut rest);
-        mechanics.subtract_constraint_force(jacobian.as_ref(), rest.as_ref(), p.as_mut());
+        mechanics.subtract_constraint_force(jacobian.as_ref(), rest.as_ref(), momentum.terms_mut().as_mut());
         (0..S::N_CONSTRAINTS).map(|c| rest[c] * rate[c]).sum()
     }
 

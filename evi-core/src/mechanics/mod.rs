@@ -22,6 +22,7 @@ mod modes;
 mod momentum;
 mod observables;
 mod quadratic_part;
+mod round_off;
 mod state;
 mod step_equations;
 
@@ -39,11 +40,13 @@ pub(crate) use legendre::ConstantLegendre;
 pub use linearisation::Linearisation;
 pub(crate) use matrix_action::MatrixAction;
 pub(crate) use modes::Modes;
+pub(crate) use momentum::relative;
 pub use momentum::{Acceleration, ProjectionError};
-pub(crate) use momentum::{Projected, relative};
 pub(crate) use observables::norm;
 pub use quadratic_part::QuadraticPart;
 pub(crate) use quadratic_part::StepModes;
+pub use round_off::LostDigits;
+pub(crate) use round_off::{Dropped, Lost, RoundOff, Rounded, Sum};
 pub use state::State;
 pub(crate) use step_equations::{DiscreteLagrangian, Slot, StepStart};
 

@@ -1,6 +1,8 @@
 //! The Legendre transform on the constraint manifold, and projections onto the manifold.
 
-use super::{ForcePoint, Mechanics};
+use core::borrow::Borrow;
+
+use super::{ForcePoint, Mechanics, Rounded, Sum};
 use crate::array::Array;
 use crate::linear::{FactoredKkt, SingularMatrix, constraint_index, unknowns};
 use crate::newton::{self, NotConverged, Tally};
@@ -40,18 +42,19 @@ impl<S: MechanicalSystem> Mechanics<S> {
     /// Removes from `momentum` the impulse `Gᵀ N` that makes the motion leave the constraints.
     ///
     /// Solves `∂L/∂v(t, q, v) + Gᵀ N = momentum`, `G v + ∂φ/∂t = 0` for `(v, N)` and returns `v` and
-    /// `p = momentum − Gᵀ N` (Marsden & West, Acta Numerica 10 (2001), sec. 3.5; the velocity step of RATTLE). Linear
+    /// `p = momentum − Gᵀ N`, with which it overwrites `momentum` (Marsden & West, Acta Numerica 10 (2001), sec. 3.5; the velocity step of RATTLE). Linear
     /// in `(v, N)` for every `L` that is quadratic in `v`: then one solve. `v` is the first guess.
     #[inline]
     pub(crate) fn project_momentum(
         &self,
         t: f64,
         q: &S::PerCoordinate<f64>,
-        momentum: &S::PerCoordinate<f64>,
+        momentum: &mut impl Sum<S>,
         mut v: S::PerCoordinate<f64>,
         tally: &mut impl Tally,
-    ) -> Result<Projected<S>, ProjectionError> {
+    ) -> Result<S::PerCoordinate<f64>, ProjectionError> {
         let (_, jacobian) = S::constraint_derivatives(&self.constants, t, q);
+        let unprojected = momentum.value().borrow().clone();
         let mut impulse = S::PerConstraint::<f64>::from_fn(|_| 0.0);
         let mut correct = || -> Result<f64, ProjectionError> {
             let (gradient, hessian) = S::lagrangian_derivatives(&self.constants, t, q, &v);
@@ -60,7 +63,7 @@ impl<S: MechanicalSystem> Mechanics<S> {
                 tally.count_fallback();
             }
             let rate = self.constraint_rate(jacobian.as_ref(), &v);
-            let mut correction = unknowns::<S>(|i| momentum[i] - gradient.momentum[i], |c| -rate[c]);
+            let mut correction = unknowns::<S>(|i| unprojected[i] - gradient.momentum[i], |c| -rate[c]);
             kkt.solve(&mut correction);
             for i in 0..S::N_COORDINATES {
                 v[i] += correction[i];
@@ -79,7 +82,10 @@ impl<S: MechanicalSystem> Mechanics<S> {
         }
         let mut constraint_momentum = S::PerCoordinate::<f64>::from_fn(|_| 0.0);
         self.add_constraint_force(jacobian.as_ref(), impulse.as_ref(), constraint_momentum.as_mut());
-        Ok(Projected { v, p: Array::from_fn(|i| momentum[i] - constraint_momentum[i]) })
+        for i in 0..S::N_COORDINATES {
+            momentum.terms_mut()[i] -= constraint_momentum[i];
+        }
+        Ok(v)
     }
 
     /// Solves once more for what the first solve left of `G v + ∂φ/∂t`.
@@ -166,7 +172,9 @@ impl<S: MechanicalSystem> Mechanics<S> {
         v: S::PerCoordinate<f64>,
     ) -> Result<Projected<S>, ProjectionError> {
         let momentum = S::lagrangian_gradient(&self.constants, t, q, &v).momentum;
-        self.project_momentum(t, q, &momentum, v, &mut ())
+        let mut momentum = Rounded(momentum);
+        let v = self.project_momentum(t, q, &mut momentum, v, &mut ())?;
+        Ok(Projected { v, p: momentum.0 })
     }
 
     /// Accelerations and multipliers of the continuous motion at `(t, q, v)`: the index-1 equations

@@ -44,6 +44,20 @@ pub(crate) struct StepStart<'a, S: MechanicalSystem> {
     pub(crate) jacobian: S::PerJacobianEntry<f64>,
 }
 
+impl<'a, S: MechanicalSystem> StepStart<'a, S> {
+    #[inline]
+    pub(crate) fn new(
+        mechanics: &Mechanics<S>,
+        t: f64,
+        q: &'a S::PerCoordinate<f64>,
+        p: &'a S::PerCoordinate<f64>,
+        inputs: &'a S::PerInput<f64>,
+    ) -> Self {
+        let (_, jacobian) = S::constraint_derivatives(&mechanics.constants, t, q);
+        Self { t, q, p, inputs, jacobian }
+    }
+}
+
 /// How the position and the velocity times `h` at a node depend on one of the arguments of a step.
 #[derive(Clone, Copy)]
 pub(crate) struct Slot {
@@ -132,6 +146,29 @@ impl<S: MechanicalSystem, T: InterpolationTable, const K: usize> DiscreteLagrang
             }
         });
         end_momentum
+    }
+
+    /// `p⁻ − p₀ = (D₁ + D₂) L_d(q₀, q₀ + d) + f⁻ + f⁺ − G₀ᵀΛ/h`, by the step equations: the derivative of `L_d` in which both ends move
+    /// together, and so no difference of large momenta.
+    pub(crate) fn momentum_gain(
+        &self,
+        start: &StepStart<'_, S>,
+        difference: &S::PerCoordinate<f64>,
+        impulse: &S::PerConstraint<f64>,
+    ) -> S::PerCoordinate<f64> {
+        let mut gain = S::PerCoordinate::<f64>::from_fn(|_| NOTHING);
+        let pull = S::PerConstraint::<f64>::from_fn(|c| self.inverse_h * impulse[c]);
+        self.for_each_node(start.t, start.q, difference, |node, weight, t, x, v| {
+            let mut gradient = S::lagrangian_gradient(&self.mechanics.constants, t, x, v);
+            self.mechanics.add_force(ForcePoint { t, q: x, v, inputs: start.inputs }, &mut gradient.force);
+            for i in 0..S::N_COORDINATES {
+                let c = self.table.coefficients(node, i);
+                gain[i] +=
+                    weight * (self.h * c.even * gradient.force[i] + c.even_rate * gradient.momentum[i]);
+            }
+        });
+        self.mechanics.subtract_constraint_force(start.jacobian.as_ref(), pull.as_ref(), gain.as_mut());
+        gain
     }
 
     /// Calls `visit(node, weight, t, x, v)` at every node of the interpolant from `q` to `q + difference`.
