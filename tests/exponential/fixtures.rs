@@ -102,3 +102,34 @@ where
     assert!(run.steps() > 10, "vacuous");
     largest
 }
+
+/// Three rods in a row, hanging, whose constraints are written in units that differ by `scale`.
+#[derive(MechanicalSystem, Clone, Copy, Debug)]
+#[evi(
+    coordinates(x1, y1, x2, y2, x3, y3),
+    kinetic = 0.5 * (der(x1).powi(2) + der(y1).powi(2)) + 0.4 * (der(x2).powi(2) + der(y2).powi(2))
+            + 0.7 * (der(x3).powi(2) + der(y3).powi(2)),
+    potential = g * (y1 + 0.8 * y2 + 1.4 * y3),
+    constraint(rod1: x1.powi(2) + y1.powi(2) == 1.0),
+    constraint(rod2: scale * ((x2 - x1).powi(2) + (y2 - y1).powi(2)) == scale),
+    constraint(rod3: scale.powi(2) * ((x3 - x2).powi(2) + (y3 - y2).powi(2)) == scale.powi(2)),
+)]
+pub(crate) struct ThreeRods {
+    pub(crate) g: f64,
+    pub(crate) scale: f64,
+}
+
+impl ThreeRods {
+    pub(crate) const HANGING: [f64; 6] = [0.0, -1.0, 0.0, -2.0, 0.0, -3.0];
+
+    /// At rest, every rod off the vertical.
+    pub(crate) fn deflected(&self) -> Start<6> {
+        let rods = [0.3_f64, 0.5, -0.4].map(f64::sin_cos);
+        let mut q = [0.0; 6];
+        for (k, (sine, cosine)) in rods.into_iter().enumerate() {
+            let above = if k == 0 { [0.0; 2] } else { [q[2 * k - 2], q[2 * k - 1]] };
+            (q[2 * k], q[2 * k + 1]) = (above[0] + sine, above[1] - cosine);
+        }
+        Start { q, v: [0.0; 6] }
+    }
+}

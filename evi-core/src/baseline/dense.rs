@@ -17,9 +17,12 @@ impl<S: MechanicalSystem> MechanicalSystem for Dense<S> {
     const PARAMETERS: &'static [&'static str] = S::PARAMETERS;
     const INPUTS: &'static [&'static str] = S::INPUTS;
     const OBSERVABLES: &'static [&'static str] = S::OBSERVABLES;
-    // Patterns stay, since the kernels fill them. A Lagrangian that might depend on time folds nothing.
-    const STRUCTURE: Structure =
-        Structure { lagrangian: Dependence { on_t: true, ..S::STRUCTURE.lagrangian }, ..S::STRUCTURE };
+    // Patterns stay, since the kernels fill them. Where the Lagrangian and its mass matrix might depend on time, nothing is folded.
+    const STRUCTURE: Structure = Structure {
+        lagrangian: Dependence { on_t: true, ..S::STRUCTURE.lagrangian },
+        mass: Dependence { on_t: true, ..S::STRUCTURE.mass },
+        ..S::STRUCTURE
+    };
     const REPORT: SystemReport = SystemReport { structure: Self::STRUCTURE, ..S::REPORT };
     const SOURCE: Option<&'static str> = S::SOURCE;
 

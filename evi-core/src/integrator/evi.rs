@@ -8,8 +8,8 @@ use super::{Compensable, CompensableStep, IterationFailure, OneStep, Scheme, Ste
 use crate::array::Array;
 use crate::linear::{constraint_index, largest_magnitude};
 use crate::mechanics::{
-    ConstantLegendre, DiscreteLagrangian, Dropped, FoldedStep, Lost, LostDigits, Mechanics, ProjectionError,
-    RoundOff, State, StepStart, Sum,
+    ConstantLegendre, DiscreteLagrangian, Dropped, FoldedStep, LeapfrogStep, Lost, LostDigits, Mechanics,
+    ProjectionError, RoundOff, State, StepStart, Sum,
 };
 use crate::newton::{self, Converged, Tally};
 use crate::scheme::{
@@ -137,9 +137,15 @@ impl<S: MechanicalSystem, const K: usize, F: Interpolant<S>> Scheme<S> for Evi<K
         let action = DiscreteLagrangian::new(mechanics, table, quadrature, h);
         // Where M or A is singular, the constraints are needed to determine the motion: the general step uses them.
         let folded = if FoldedStep::<S, F>::EXISTS { FoldedStep::new(&action).ok() } else { None };
+        let leapfrog = if EviStep::<S, F, K>::MAY_LEAP && quadrature.is_trapezoid() {
+            LeapfrogStep::new(&action.mechanics, h).ok()
+        } else {
+            None
+        };
         let legendre =
             if ConstantLegendre::<S>::EXISTS { ConstantLegendre::new(&action.mechanics).ok() } else { None };
-        Ok(EviStep { action, folded: folded.map(MultiplierStep::new), legendre })
+        let (folded, leapfrog) = (folded.map(MultiplierStep::new), leapfrog.map(MultiplierStep::new));
+        Ok(EviStep { action, folded, leapfrog, legendre })
     }
 }
 
@@ -148,6 +154,8 @@ pub struct EviStep<S: MechanicalSystem, F: Interpolant<S>, const K: usize> {
     action: DiscreteLagrangian<S, F::Table<K>, K>,
     /// The step of a quadratic Lagrangian.
     folded: Option<MultiplierStep<S, FoldedStep<S, F>>>,
+    /// The step of a potential that acts at the ends alone.
+    leapfrog: Option<MultiplierStep<S, LeapfrogStep<S>>>,
     /// The Legendre transform of a constant mass matrix.
     legendre: Option<ConstantLegendre<S>>,
 }
@@ -185,6 +193,10 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> CompensableStep<S> 
 }
 
 impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
+    /// Whether two nodes on the curves of `F` can make a leapfrog step that is not folded.
+    const MAY_LEAP: bool =
+        K == 2 && F::IS_STRAIGHT && LeapfrogStep::<S>::EXISTS && !FoldedStep::<S, F>::EXISTS;
+
     #[inline(always)]
     fn advance_with<R: RoundOff<S>>(
         &mut self,
@@ -196,6 +208,11 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
             && let Some(folded) = &mut self.folded
         {
             return folded.advance(&self.action.mechanics, self.action.h(), state, round_off, tally);
+        }
+        if Self::MAY_LEAP
+            && let Some(leapfrog) = &mut self.leapfrog
+        {
+            return leapfrog.advance(&self.action.mechanics, self.action.h(), state, round_off, tally);
         }
         let h = self.action.h();
         let start_of_curve = Array::from_fn(|i| h * state.v[i]);

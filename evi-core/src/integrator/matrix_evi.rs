@@ -183,7 +183,7 @@ impl<S: MechanicalSystem, const K: usize, P: QuadraticModel<S>> Scheme<S> for Ma
             phase: modes.flows[k].phase(),
             condition: modes.flows[k].condition(),
         });
-        let form = if is_trapezoid(&self.quadrature) {
+        let form = if self.quadrature.is_trapezoid() {
             let requirement = "a positive definite mass matrix";
             let step = ImpulseStep::new(&mechanics, part, &modes, self.mollifier, h)
                 .map_err(|_| SchemeError::UnsupportedStructure { scheme: SCHEME, requirement })?;
@@ -194,12 +194,6 @@ impl<S: MechanicalSystem, const K: usize, P: QuadraticModel<S>> Scheme<S> for Ma
         };
         Ok(MatrixEviStep { form, modes: report })
     }
-}
-
-/// Whether the nodes are the ends of a step. Their weights are then ½ each, up to rounding.
-fn is_trapezoid<const K: usize>(quadrature: &Quadrature<K>) -> bool {
-    // Equality of bits: other nodes are another rule, however near.
-    quadrature.offsets().as_slice() == [-0.5, 0.5]
 }
 
 /// A mode of a matrix frequency, as a step sees it.

@@ -18,9 +18,9 @@ pub(crate) fn checked_pivot_ratio(
     let (mut smallest, mut largest) = (f64::INFINITY, 0.0_f64);
     for i in 0..dimension {
         let pivot = pivot(i).abs();
-        // Written so that a NaN pivot survives both comparisons: NaN entries reach the last pivot.
-        smallest = if pivot >= smallest { smallest } else { pivot };
-        largest = if pivot <= largest { largest } else { pivot };
+        // Written so that a NaN pivot survives both comparisons, and all that follow.
+        smallest = if pivot >= smallest || smallest.is_nan() { smallest } else { pivot };
+        largest = if pivot <= largest || largest.is_nan() { largest } else { pivot };
     }
     let pivot_ratio = match smallest {
         _ if dimension == 0 => 1.0,

@@ -47,8 +47,11 @@ where
     #[inline]
     fn solve(&self, rhs: &mut V) {
         let n = M::LEN;
+        // The multipliers of a column were exchanged with the rows below it: all exchanges come before the substitution.
         for k in 0..n {
             rhs.as_mut().swap(k, self.exchanges[k]);
+        }
+        for k in 0..n {
             for row in k + 1..n {
                 let known = self.rows[row][k] * rhs[k];
                 rhs[row] -= known;

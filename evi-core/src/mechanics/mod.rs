@@ -3,7 +3,7 @@
 //! In: a scene's kernels and their constants. Out: energies, momenta, forces, projections, accelerations with multipliers
 //! ([`Mechanics`]), linearisations ([`Linearisation`]), the equations of one step (`DiscreteLagrangian`; `MatrixAction` where a
 //! quadratic part is integrated exactly), and steps that are linear in the momentum, but for their constraints: those of
-//! quadratic Lagrangians (`FoldedStep`) and impulse methods (`ImpulseStep`).
+//! quadratic Lagrangians (`FoldedStep`), of the trapezoidal rule (`LeapfrogStep`), and impulse methods (`ImpulseStep`).
 
 mod constraints;
 mod coordinate_matrix;
@@ -14,6 +14,7 @@ mod forces;
 mod galerkin_equations;
 mod impulse_step;
 mod kick_drift_kick;
+mod leapfrog_step;
 mod legendre;
 mod linearisation;
 mod matrix_action;
@@ -34,6 +35,7 @@ pub(crate) use forces::{ForceDerivatives, ForcePoint};
 pub(crate) use galerkin_equations::{GalerkinAction, Points};
 pub(crate) use impulse_step::ImpulseStep;
 pub(crate) use kick_drift_kick::KickDriftKick;
+pub(crate) use leapfrog_step::LeapfrogStep;
 pub(crate) use legendre::ConstantLegendre;
 pub use linearisation::Linearisation;
 pub(crate) use matrix_action::MatrixAction;

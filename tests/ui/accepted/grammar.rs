@@ -114,12 +114,12 @@ pub struct Numbers;
 pub struct Dissipation;
 
 fn main() {
-    let scheme = Evi::simpson(0.01).scene_frequencies();
+    let scheme = Evi::simpson(0.01).scene_frequencies().allow_soft_modes();
     let mut run = Simulation::new(Forces { input: 2.0 }, scheme).start([1.0, 0.0, 0.5], [0.0; 3]).unwrap();
     run.set_inputs([1.0, 2.0, 3.0]);
     assert_eq!(run.integrate(0.1).unwrap().series("x").unwrap().len(), 11);
     assert_eq!(Forces::INPUTS, ["force", "observe", "torque"]);
-    let scheme = Evi::simpson(0.01).scene_frequencies();
+    let scheme = Evi::simpson(0.01).scene_frequencies().allow_soft_modes();
     assert!(Simulation::new(Numbers, scheme).start([1.0], [0.0]).unwrap().advance().is_ok());
     assert!(Simulation::new(Dissipation, Evi::midpoint(0.01)).start([1.0], [0.0]).unwrap().advance().is_ok());
     let system = Attributes { mass: 1.0, length: 1.0, gravity: 9.81 };
