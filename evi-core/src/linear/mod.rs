@@ -16,6 +16,7 @@ mod triangular;
 
 pub use closed_form::{Inverse0, Inverse1, Inverse2};
 pub use dense::DenseLu;
+#[cfg(feature = "std")]
 pub(crate) use dense::checked_pivot_ratio;
 pub use elimination::{Elimination, Guarded, reciprocal_pivot};
 #[cfg(feature = "std")]

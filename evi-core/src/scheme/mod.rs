@@ -12,6 +12,7 @@ mod frequency;
 mod growth;
 mod mode;
 mod mollifier;
+#[cfg(feature = "std")]
 mod nodal;
 mod quadrature;
 mod scene_frequencies;
@@ -29,7 +30,9 @@ pub use frequency::Frequency;
 pub use growth::growth_rate;
 pub(crate) use mode::ModeFlow;
 pub use mollifier::Mollifier;
+#[cfg(feature = "std")]
 pub(crate) use nodal::LobattoNodes;
+#[cfg(feature = "std")]
 pub use nodal::{MOST_INTERVALS, NodalCurves, NodalTable, NodalTables};
 pub use quadrature::{Quadrature, QuadratureError};
 pub use scene_frequencies::{SceneFrequencies, SceneTable};
