@@ -182,7 +182,10 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'_, S, F, R>
         {
             return Ok(Landing { q, impulse, gram, corrections: CHORDS });
         }
-        self.clone().continue_from([first, second], q, impulse, tally)
+        // Taken apart and put together: the values of the other path stay in registers.
+        let Landing { q, impulse, gram, corrections } =
+            self.clone().continue_from([first, second], q, impulse, tally)?;
+        Ok(Landing { q, impulse, gram, corrections })
     }
 
     /// Newton's iteration after two corrections with one matrix, for the `residuals`, that led to `q`.

@@ -90,23 +90,25 @@ impl<S: MechanicalSystem> ConstantLegendre<S> {
             momentum.terms_mut().as_mut(),
         );
         let removed = self.remove_rest(mechanics, gram, jacobian, &mut momentum);
-        let mut v = self.velocity(momentum.value().borrow());
+        let v = self.velocity(momentum.value().borrow());
         if removed > LARGEST_REST * self.doubled_energy(momentum.value().borrow(), &v) {
-            v = self.projected_again(mechanics, gram, jacobian, &mut momentum);
+            return self.projected_again(mechanics, gram, jacobian.clone(), momentum);
         }
         (v, momentum)
     }
 
+    /// By value: what it takes need not lie in memory until then.
     #[cold]
-    fn projected_again(
+    fn projected_again<P: Sum<S>>(
         &self,
         mechanics: &Mechanics<S>,
         gram: &S::GramFactors,
-        jacobian: &S::PerJacobianEntry<f64>,
-        momentum: &mut impl Sum<S>,
-    ) -> S::PerCoordinate<f64> {
-        self.remove_rest(mechanics, gram, jacobian, momentum);
-        self.velocity(momentum.value().borrow())
+        jacobian: S::PerJacobianEntry<f64>,
+        mut momentum: P,
+    ) -> (S::PerCoordinate<f64>, P) {
+        self.remove_rest(mechanics, gram, &jacobian, &mut momentum);
+        let v = self.velocity(momentum.value().borrow());
+        (v, momentum)
     }
 
     /// Removes what leaves the constraints, and returns twice the kinetic energy that it had.
