@@ -111,6 +111,7 @@ impl Scene {
                 format!("let (q, v) = ([{start}], [0.0; {n}]);\n{RUN}\n{comparison}")
             }
         };
+        // Without a run, fields and the prelude are unused: these crates are built, not kept.
         format!(
             "#![allow(unused)]\nuse evi_core::prelude::*;\n\n{attribute}struct Scene {{ {declared} }}\n\n\
              fn main() {{\nlet scene = Scene {{ {values} }};\n{main}\n}}\n"

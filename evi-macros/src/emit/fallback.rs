@@ -9,7 +9,8 @@ use crate::model::{constraint_names, coordinate_names, has_frequencies, input_na
 use crate::syntax::Declaration;
 
 /// The mistakes as compile errors, and a stub with the true sizes: code that uses the system type-checks as
-/// it will when they are mended, so that no second wave of errors hides the first. Its scalar is called
+/// it will when they are mended, so that no second wave of errors hides the first. The compile errors keep the stub from ever
+/// running, hence `unimplemented!` and arguments that nothing uses. Its scalar is called
 /// `__T`: a struct that is generic by mistake has most likely a `T` of its own.
 pub(crate) fn fallback(declaration: &Declaration, diagnostics: &Diagnostics) -> TokenStream {
     let errors = compile_errors(diagnostics);
