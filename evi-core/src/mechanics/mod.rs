@@ -86,15 +86,7 @@ impl<S: MechanicalSystem> Mechanics<S> {
 
     /// The mass matrix of a scene in which it is constant.
     pub(crate) fn constant_mass(&self) -> Rows<S> {
-        let at_rest = Array::from_fn(|_| 0.0);
-        let (_, hessian) = S::lagrangian_derivatives(&self.constants, 0.0, &at_rest, &at_rest);
-        let mut mass = CoordinateMatrix::<S>::zero_rows();
-        for entry in S::STRUCTURE.hessian.vv {
-            let value = entry.value(self.constants.as_ref(), hessian.as_ref());
-            mass[entry.row][entry.col] = value;
-            mass[entry.col][entry.row] = value;
-        }
-        mass
+        self.mass_at(&Array::from_fn(|_| 0.0))
     }
 
     /// The saddle-point matrix of mass matrix and constraints, `[M Gᵀ; G 0]`.
