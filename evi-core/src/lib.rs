@@ -38,7 +38,7 @@
 //!
 //! | feature | default | effect |
 //! |---|---|---|
-//! | `std` | yes | trajectories on the heap; elementary functions of the platform. Without it the crate is `no_std` |
+//! | `std` | yes | trajectories on the heap; comparisons; elementary functions of the platform. Without it the crate is `no_std` |
 //! | `derive` | yes | re-exports `#[derive(MechanicalSystem)]` |
 //! | `source` | no | [`system::MechanicalSystem::SOURCE`] holds the generated code, to read |
 //! | `generic` | no | `generic::GenericEvi` for systems of run-time size; [`scalar::Scalar`] for the dual numbers of num-dual |
@@ -51,6 +51,7 @@ extern crate self as evi_core;
 
 pub mod array;
 pub mod baseline;
+#[cfg(feature = "std")]
 pub mod comparison;
 pub mod generic;
 pub mod integrator;

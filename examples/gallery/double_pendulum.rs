@@ -5,7 +5,7 @@
 
 use evi_core::prelude::*;
 
-use crate::{GRAVITY, Start};
+use crate::{GRAVITY, Reference, ReferenceOrigin, Scene, Start};
 
 /// Planar double pendulum, pivot at the origin, y upwards; SI units.
 #[derive(MechanicalSystem, Clone, Copy, Debug)]
@@ -44,5 +44,31 @@ impl DoublePendulum {
     /// At rest, both rods stretched out horizontally: the start of chaotic motion.
     pub const fn horizontal(&self) -> Start<4> {
         Start { q: [self.l1, 0.0, self.l1 + self.l2, 0.0], v: [0.0; 4] }
+    }
+}
+
+impl Scene for DoublePendulum {
+    const NAME: &'static str = "double_pendulum";
+    const SUMMARY: &'static str = "Two point masses on massless rods, chaotic from the horizontal.";
+    const ORIGIN: &'static str =
+        "Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), sec. VII.1.4, for two masses";
+    const HORIZON: f64 = 10.0;
+    const CONSERVES_ENERGY: bool = true;
+
+    fn standard() -> Self {
+        Self::UNIT
+    }
+
+    fn standard_motion(&self) -> ([f64; 4], [f64; 4]) {
+        let Start { q, v } = self.horizontal();
+        (q, v)
+    }
+
+    fn reference() -> Reference<Self> {
+        Reference {
+            origin: ReferenceOrigin::Certified,
+            q: [-0.5383472396122264, -0.8427231156209589, -1.0407657832461705, -1.7073476624693273],
+            v: [5.12239544887267, -3.272281724550632, -3.248346643425482, 1.5918134095484713],
+        }
     }
 }

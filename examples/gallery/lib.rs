@@ -11,6 +11,7 @@ pub mod fermi_pasta_ulam;
 pub mod harmonic_oscillator;
 pub mod kapitza_pendulum;
 pub mod pendulum;
+mod scene;
 pub mod spherical_pendulum;
 pub mod stiff_spring_pendulum;
 
@@ -22,6 +23,7 @@ pub use fermi_pasta_ulam::FermiPastaUlam;
 pub use harmonic_oscillator::HarmonicOscillator;
 pub use kapitza_pendulum::KapitzaPendulum;
 pub use pendulum::Pendulum;
+pub use scene::{Momentum, Reference, ReferenceOrigin, Scene, Visitor};
 pub use spherical_pendulum::SphericalPendulum;
 pub use stiff_spring_pendulum::StiffSpringPendulum;
 
@@ -35,6 +37,11 @@ pub struct Start<const N: usize> {
     pub q: [f64; N],
     /// Velocities.
     pub v: [f64; N],
+}
+
+/// Shows the visitor every scene of the gallery, in alphabetical order.
+pub fn visit_all(visitor: &mut impl Visitor) {
+    visitor.visit::<DoublePendulum>();
 }
 
 /// Compiles the example of the README.

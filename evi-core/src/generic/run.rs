@@ -8,7 +8,7 @@ use super::GenericSystem;
 use super::acceleration::GenericAcceleration;
 use super::scheme::GenericEvi;
 use super::step::{GenericState, GenericStep};
-use crate::comparison::Solver;
+use crate::comparison::{Failure, Solver};
 use crate::integrator::{CONSISTENCY, ConstraintLabel, StartError, StepError, steps_between};
 use crate::linear::SingularMatrix;
 use crate::mechanics::relative;
@@ -241,7 +241,16 @@ impl<S: GenericSystem> Solver for GenericRun<S> {
         Self::steps(self)
     }
 
-    fn advance_to(&mut self, t: f64) -> Result<(), StepError> {
-        Self::advance_to(self, t)
+    fn advance_to(&mut self, t: f64) -> Result<(), Failure> {
+        Self::advance_to(self, t)?;
+        Ok(())
+    }
+
+    fn advance_visiting(&mut self, t: f64, visit: &mut dyn FnMut(&dyn Solver)) -> Result<(), Failure> {
+        for _ in 0..steps_between(self.state.t, t, self.step.h())? {
+            self.advance()?;
+            visit(self);
+        }
+        Ok(())
     }
 }

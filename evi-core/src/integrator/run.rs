@@ -3,7 +3,8 @@
 #[cfg(feature = "std")]
 use super::trajectory::{Interrupted, Trajectory};
 use super::{OneStep, StepError, Tally};
-use crate::comparison::Solver;
+#[cfg(feature = "std")]
+use crate::comparison::{Failure, Solver};
 use crate::mechanics::{Mechanics, State};
 use crate::newton::Fallbacks;
 use crate::system::MechanicalSystem;
@@ -186,6 +187,7 @@ impl<S: MechanicalSystem, M: OneStep<S>, T: Tally> Run<S, M, T> {
     }
 }
 
+#[cfg(feature = "std")]
 impl<S: MechanicalSystem, M: OneStep<S>, T: Tally> Solver for Run<S, M, T> {
     fn t(&self) -> f64 {
         self.state.t
@@ -207,7 +209,16 @@ impl<S: MechanicalSystem, M: OneStep<S>, T: Tally> Solver for Run<S, M, T> {
         self.steps
     }
 
-    fn advance_to(&mut self, t: f64) -> Result<(), StepError> {
-        Run::advance_to(self, t).map(|_| ())
+    fn advance_to(&mut self, t: f64) -> Result<(), Failure> {
+        Run::advance_to(self, t)?;
+        Ok(())
+    }
+
+    fn advance_visiting(&mut self, t: f64, visit: &mut dyn FnMut(&dyn Solver)) -> Result<(), Failure> {
+        for _ in 0..self.steps_to(t)? {
+            self.advance()?;
+            visit(self);
+        }
+        Ok(())
     }
 }
