@@ -1,5 +1,7 @@
 //! What comparisons need to know of a scene beside its equations.
 
+use std::fmt;
+
 use evi_core::generic::GenericSystem;
 use evi_core::prelude::*;
 
@@ -57,6 +59,16 @@ pub enum ReferenceOrigin {
     /// Computed with the scene's own kernels in double-double arithmetic, by Gauss collocation of high order with two step sizes that agree
     /// in all digits of `f64`.
     DoubleDouble,
+}
+
+impl fmt::Display for ReferenceOrigin {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Self::Certified => "certified",
+            Self::ClosedForm => "closed form",
+            Self::DoubleDouble => "double-double",
+        })
+    }
 }
 
 /// What to do with scenes of any type, one after the other.
