@@ -56,9 +56,9 @@ pub enum ReferenceOrigin {
     Certified,
     /// A solution in closed form.
     ClosedForm,
-    /// Computed with the scene's own kernels in double-double arithmetic, by Gauss collocation of high order with two step sizes that agree
-    /// in all digits of `f64`.
-    DoubleDouble,
+    /// Computed with the scene's own kernels in octuple precision by extrapolation of the index-1 equations, with two step sizes that
+    /// agree beyond the digits of `f64`: `cargo run --release --example reference`.
+    Octuple,
 }
 
 impl fmt::Display for ReferenceOrigin {
@@ -66,7 +66,7 @@ impl fmt::Display for ReferenceOrigin {
         formatter.write_str(match self {
             Self::Certified => "certified",
             Self::ClosedForm => "closed form",
-            Self::DoubleDouble => "double-double",
+            Self::Octuple => "octuple precision",
         })
     }
 }
