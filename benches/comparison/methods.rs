@@ -1,10 +1,12 @@
 //! The table of methods.
 
-use evi_core::baseline::{Rattle, Rk4};
+use evi_core::baseline::{GeneralizedAlpha, ImplicitMidpoint, Rattle, Rk4, Shake};
 use evi_core::comparison::{Failure, Solver};
 use evi_core::generic::GenericEvi;
 use evi_core::prelude::*;
 use evi_examples::Scene;
+
+use super::Refusal;
 
 /// A method and how it starts on scenes of type `S`.
 pub struct Method<S> {
@@ -82,14 +84,32 @@ pub enum Resolution {
 pub fn all<S: Scene>() -> Vec<Method<S>> {
     vec![
         member("midpoint", 2, "variational, midpoint rule", |s, h| run(s, Evi::midpoint(h))),
-        member("suzuki_4", 4, "5 midpoint steps composed", |s, h| {
+        member("midpoint_4", 4, "5 midpoint steps composed (Suzuki)", |s, h| {
             run(s, Evi::midpoint(h).composed(Composition::suzuki_4()))
         }),
-        member("kahan_li_6", 6, "9 midpoint steps composed", |s, h| {
+        member("midpoint_6", 6, "9 midpoint steps composed (Kahan, Li)", |s, h| {
             run(s, Evi::midpoint(h).composed(Composition::kahan_li_6()))
         }),
-        member("kahan_li_8", 8, "17 midpoint steps composed", |s, h| {
+        member("midpoint_8", 8, "17 midpoint steps composed (Kahan, Li)", |s, h| {
             run(s, Evi::midpoint(h).composed(Composition::kahan_li_8()))
+        }),
+        member("trapezoid", 2, "variational, trapezoidal rule: leapfrog or RATTLE", |s, h| {
+            run(s, Evi::trapezoid(h))
+        }),
+        member("trapezoid_4", 4, "5 trapezoid steps composed (Suzuki)", |s, h| {
+            run(s, Evi::trapezoid(h).composed(Composition::suzuki_4()))
+        }),
+        member("trapezoid_6", 6, "9 trapezoid steps composed (Kahan, Li)", |s, h| {
+            run(s, Evi::trapezoid(h).composed(Composition::kahan_li_6()))
+        }),
+        member("trapezoid_8", 8, "17 trapezoid steps composed (Kahan, Li)", |s, h| {
+            run(s, Evi::trapezoid(h).composed(Composition::kahan_li_8()))
+        }),
+        member("exponential", 2, "impulse method: quadratic part at an equilibrium exact", |s, h| {
+            run(s, Evi::trapezoid(h).linearised_at(equilibrium(s)?))
+        }),
+        member("exponential_8", 8, "17 exponential steps composed (Kahan, Li)", |s, h| {
+            run(s, Evi::trapezoid(h).linearised_at(equilibrium(s)?).composed(Composition::kahan_li_8()))
         }),
         member("galerkin_2", 4, "variational, Lobatto IIIA-IIIB with 3 stages", |s, h| {
             run(s, Galerkin::<2>::new(h))
@@ -101,6 +121,11 @@ pub fn all<S: Scene>() -> Vec<Method<S>> {
             run(s, Galerkin::<8>::new(h))
         }),
         baseline("rattle", 2, "leapfrog on the constraints", |s, h| run(s, Rattle::new(h))),
+        baseline("shake", 2, "leapfrog on the constraints, velocities by differences", |s, h| {
+            run(s, Shake::new(h))
+        }),
+        baseline("implicit_midpoint", 2, "implicit midpoint rule", |s, h| run(s, ImplicitMidpoint::new(h))),
+        baseline("generalized_alpha", 2, "generalized-α, index 3", |s, h| run(s, GeneralizedAlpha::new(h))),
         baseline("rk4", 4, "explicit Runge-Kutta, index-1 equations", |s, h| run(s, Rk4::new(h))),
         baseline(
             "midpoint_generic",
@@ -114,6 +139,10 @@ pub fn all<S: Scene>() -> Vec<Method<S>> {
         )
         .on(Path::Generic),
     ]
+}
+
+fn equilibrium<S: Scene>(system: &S) -> Result<S::PerCoordinate<f64>, Refusal> {
+    system.equilibrium().ok_or(Refusal::NoEquilibrium)
 }
 
 type Start<S> = fn(&S, f64) -> Result<Box<dyn Solver>, Failure>;

@@ -7,7 +7,7 @@ pub mod measure;
 pub mod methods;
 pub mod scenes;
 
-/// A method that is not there, with what it takes to have it.
+/// A method that is not there, or not for this scene.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Refusal {
     /// Left out when the program was compiled.
@@ -16,6 +16,9 @@ pub enum Refusal {
         /// Name of the feature.
         feature: &'static str,
     },
+    /// For scenes with an equilibrium to linearise at.
+    #[error("not applicable: the motion oscillates about no equilibrium")]
+    NoEquilibrium,
     /// Not on this machine, or not asked for.
     #[error("not run: {reason}")]
     NotRun {

@@ -142,3 +142,76 @@ fn write_line(file: &mut File, value: &impl Serialize) -> io::Result<()> {
     file.write_all(line.as_bytes())?;
     file.flush()
 }
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+    use std::path::PathBuf;
+
+    use super::{Finished, Journal, JournalError, Piece};
+    use crate::machine::Machine;
+
+    fn folder(name: &str) -> PathBuf {
+        let path = std::env::temp_dir().join(format!("evi_journal_{name}_{}", std::process::id()));
+        fs::create_dir_all(&path).expect("a folder for temporary files");
+        path
+    }
+
+    fn finished(scene: &str) -> Finished {
+        let piece = Piece::Speedup { scene: scene.into() };
+        Finished { piece, rows: Vec::new(), speedup: None, long_run: None }
+    }
+
+    /// A journal with two finished pieces, closed.
+    fn written(name: &str) -> PathBuf {
+        let folder = folder(name);
+        let mut journal = Journal::open(&folder, true, Machine::present()).expect("a new journal");
+        journal.keep(finished("top")).expect("space");
+        journal.keep(finished("chain")).expect("space");
+        folder
+    }
+
+    #[test]
+    fn what_is_finished_is_there_again() {
+        let folder = written("again");
+        let journal = Journal::open(&folder, true, Machine::present()).expect("the same measurement");
+        assert_eq!(journal.pieces().len(), 2);
+        journal.remove().expect("the file");
+        assert!(Journal::open(&folder, true, Machine::present()).expect("new").finished.is_empty());
+        fs::remove_dir_all(folder).expect("the folder");
+    }
+
+    #[test]
+    fn a_torn_last_line_is_dropped_and_the_next_one_is_whole() {
+        let folder = written("torn");
+        let file = folder.join("unfinished.jsonl");
+        let text = fs::read_to_string(&file).expect("the file");
+        fs::write(&file, &text[..text.len() - 7]).expect("the file");
+        let mut journal = Journal::open(&folder, true, Machine::present()).expect("a torn line");
+        assert_eq!(journal.finished.len(), 1);
+        journal.keep(finished("kepler")).expect("space");
+        drop(journal);
+        assert_eq!(Journal::open(&folder, true, Machine::present()).expect("whole").finished.len(), 2);
+        fs::remove_dir_all(folder).expect("the folder");
+    }
+
+    #[test]
+    fn a_corrupt_line_is_named_and_nothing_is_lost() {
+        let folder = written("corrupt");
+        let file = folder.join("unfinished.jsonl");
+        let text = fs::read_to_string(&file).expect("the file").replacen("speedup", "speed", 1);
+        fs::write(&file, &text).expect("the file");
+        let Err(error) = Journal::open(&folder, true, Machine::present()) else { panic!("it was opened") };
+        assert!(matches!(error, JournalError::Corrupt { line: 2, .. }), "{error}");
+        assert_eq!(fs::read_to_string(&file).expect("the file"), text);
+        fs::remove_dir_all(folder).expect("the folder");
+    }
+
+    #[test]
+    fn another_effort_does_not_go_on_with_it() {
+        let folder = written("effort");
+        let opened = Journal::open(&folder, false, Machine::present());
+        assert!(matches!(opened, Err(JournalError::OtherEffort { quick: true, .. })));
+        fs::remove_dir_all(folder).expect("the folder");
+    }
+}

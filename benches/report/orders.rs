@@ -65,3 +65,38 @@ fn slope(points: &[(f64, f64)]) -> f64 {
     let covariance: f64 = points.iter().map(|p| (p.0 - mean_x) * (p.1 - mean_y)).sum();
     covariance / points.iter().map(|p| (p.0 - mean_x).powi(2)).sum::<f64>()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::fit;
+    use crate::results::Row;
+
+    /// Runs at `h = 2^-k` with the errors `error(h)`.
+    fn rows(error: impl Fn(f64) -> f64) -> Vec<Row> {
+        let row =
+            |h: f64| Row { h: Some(h), position_error: Some(error(h)), ..Row::empty("a scene", "a method") };
+        (0..12).map(|k| row(0.5_f64.powi(k))).collect()
+    }
+
+    fn fitted(error: impl Fn(f64) -> f64) -> Option<f64> {
+        let rows = rows(error);
+        fit(&rows.iter().collect::<Vec<_>>(), 1.0).map(|fit| fit.order)
+    }
+
+    #[test]
+    fn a_power_of_the_step_size_is_its_order() {
+        let order = fitted(|h| 0.7 * h.powi(4)).expect("many points");
+        assert!((order - 4.0).abs() < 1e-9, "{order}");
+    }
+
+    #[test]
+    fn coarse_errors_and_round_off_are_left_out() {
+        let order = fitted(|h| if h > 0.1 { 1.0 } else { 3.0 * h.powi(6) + 1e-14 }).expect("three points");
+        assert!((order - 6.0).abs() < 0.05, "{order}");
+    }
+
+    #[test]
+    fn errors_that_stay_coarse_have_no_order() {
+        assert_eq!(fitted(|_| 0.3), None);
+    }
+}

@@ -64,6 +64,13 @@ pub(crate) struct Method {
     summary: &'static str,
 }
 
+#[cfg(test)]
+impl Method {
+    pub(crate) const fn named(name: &'static str, is_member: bool) -> Self {
+        Self { name, path: "specialised", order: 4, is_member, summary: "" }
+    }
+}
+
 impl From<MethodFacts> for Method {
     fn from(MethodFacts { name, path, role, order, summary, .. }: MethodFacts) -> Self {
         Self { name, path: path.name(), order, is_member: role.is_member(), summary }
@@ -113,6 +120,15 @@ impl Row {
             hidden_constraint_error: None,
             steps: None,
         }
+    }
+
+    #[cfg(test)]
+    pub(crate) fn empty(scene: &str, method: &str) -> Self {
+        let empty = r#"{"path": "specialised", "order": 4, "horizon": 1.0, "status": "ok"}"#;
+        let mut row: serde_json::Value = serde_json::from_str(empty).expect("JSON");
+        row["scene"] = scene.into();
+        row["method"] = method.into();
+        serde_json::from_value(row).expect("a row")
     }
 
     /// At a step size or tolerance.

@@ -13,14 +13,23 @@ const REPETITIONS: usize = 9;
 /// Steps of a counted run; a second one takes twice as many.
 const COUNTED_STEPS: u64 = 40;
 
-/// At the coarsest step size that both paths have reached the horizon with, if there is one.
+/// An error of this fraction of the configuration is what the midpoint rule is used for.
+const USUAL_ERROR: f64 = 1e-3;
+
+/// At the step size with about the [usual error](USUAL_ERROR), of those that both paths have reached the horizon with.
 pub(crate) fn speedup(scene: &dyn AnyScene, rows: &[Row], quick: bool) -> Option<Speedup> {
-    let steps_of = |method: &str| -> Vec<f64> {
-        let reached = rows.iter().filter(|row| row.method == method && row.position_error.is_some());
-        reached.filter_map(|row| row.h).collect()
+    let errors = |method: &str| -> Vec<(f64, f64)> {
+        rows.iter()
+            .filter(|row| row.method == method)
+            .filter_map(|row| row.h.zip(row.position_error))
+            .collect()
     };
-    let generic_steps = steps_of(GENERIC);
-    let h = steps_of(SPECIALISED).into_iter().find(|h| generic_steps.contains(h))?;
+    let generic = errors(GENERIC);
+    let usual = USUAL_ERROR * scene.facts().size;
+    let (h, _) = errors(SPECIALISED)
+        .into_iter()
+        .filter(|(h, _)| generic.iter().any(|(other, _)| other == h))
+        .min_by(|a, b| (a.1 / usual).ln().abs().total_cmp(&(b.1 / usual).ln().abs()))?;
     let (specialised, generic) = (number(scene, SPECIALISED)?, number(scene, GENERIC)?);
     let mut fastest = [f64::INFINITY; 2];
     for _ in 0..REPETITIONS {

@@ -61,7 +61,7 @@ impl Thoroughness {
 
 /// Methods whose energy is followed over long times: one of each kind.
 const LONG_RUNS: [&str; 7] =
-    ["midpoint", "kahan_li_8", "galerkin_8", "gauss_8", "rk4", "dop853", "generalized_alpha"];
+    ["midpoint", "midpoint_8", "galerkin_8", "gauss_8", "rk4", "dop853", "generalized_alpha"];
 /// Points of a curve of long-time energy.
 const WINDOWS: usize = 240;
 /// The fewest steps of a sweep.

@@ -24,14 +24,15 @@ pub(crate) fn print(results: &Results) {
             );
             let times =
                 verdict.and_then(|verdict| verdict.seconds.iter().find(|times| times.0 == method.name));
-            match (times, rows().next()) {
-                (Some((_, times)), _) => {
+            let smallest = rows().filter_map(|row| row.position_error).min_by(f64::total_cmp);
+            match (times, smallest, rows().next()) {
+                (Some((_, times)), ..) => {
                     times.iter().for_each(|time| print!(" {:>9}", time.map_or("–".into(), duration)));
                     println!();
                 }
-                (None, Some(row)) if row.status != "ok" => println!("  {}", row.status),
-                (None, Some(_)) => println!("  does not reach {:.0e}", ERRORS[0]),
-                (None, None) => println!("  not measured yet"),
+                (None, Some(smallest), _) => println!("  the smallest error is {smallest:.0e}"),
+                (None, None, Some(row)) => println!("  {}", row.status),
+                (None, None, None) => println!("  not measured yet"),
             }
         }
         if let Some(speedup) = results.speedups.iter().find(|speedup| speedup.scene == scene.name) {

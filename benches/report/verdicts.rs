@@ -63,7 +63,7 @@ fn clause(level: usize, seconds: &[(&Method, [Option<f64>; ERRORS.len()])]) -> S
         (Some((name, time)), None) | (None, Some((name, time))) => {
             format!("{to} {name} wins in {}, the other side does not reach it", duration(time))
         }
-        (None, None) => format!("{to} no method measured"),
+        (None, None) => format!("{to} no method reaches it"),
     }
 }
 
@@ -75,4 +75,47 @@ pub(crate) fn duration(seconds: f64) -> String {
         s => (s, "s"),
     };
     if value < 10.0 { format!("{value:.1} {unit}") } else { format!("{value:.0} {unit}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Verdict, duration, on};
+    use crate::results::{Method, Row};
+
+    fn row(method: &str, position_error: f64, seconds: f64) -> Row {
+        let (position_error, seconds) = (Some(position_error), Some(seconds));
+        Row { position_error, seconds, ..Row::empty("top", method) }
+    }
+
+    fn verdict(rows: &[Row]) -> Verdict {
+        on("top", rows, &[Method::named("ours", true), Method::named("theirs", false)])
+    }
+
+    #[test]
+    fn the_fastest_run_that_is_exact_enough_counts() {
+        let verdict = verdict(&[
+            row("ours", 1e-4, 3e-6),
+            row("ours", 1e-7, 2e-6),
+            row("ours", 1e-2, 1e-6),
+            row("theirs", 1e-4, 8e-6),
+        ]);
+        assert_eq!(verdict.seconds[0].1, [Some(2e-6), Some(2e-6), None, None]);
+        assert_eq!(
+            verdict.sentence,
+            "top: to 1e-3 ours wins in 2.0 µs, 4.0 times as fast as theirs; to 1e-6 ours wins in 2.0 µs, the other \
+             side does not reach it; to 1e-9 no method reaches it; to 1e-12 no method reaches it."
+        );
+    }
+
+    #[test]
+    fn a_baseline_may_win() {
+        let verdict = verdict(&[row("ours", 1e-13, 2.0), row("theirs", 1e-13, 0.5)]);
+        assert!(verdict.sentence.contains("to 1e-12 theirs wins in 500 ms, 4.0 times as fast as ours"));
+    }
+
+    #[test]
+    fn durations_have_the_unit_that_suits_them() {
+        let texts: Vec<String> = [2.3e-6, 4.56e-4, 0.012, 3.0, 70.0].map(duration).into();
+        assert_eq!(texts, ["2.3 µs", "456 µs", "12 ms", "3.0 s", "70 s"]);
+    }
 }

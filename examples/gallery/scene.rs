@@ -28,6 +28,12 @@ pub trait Scene: MechanicalSystem + GenericSystem + Clone + Send + Sync + 'stati
 
     /// The end of the standard motion.
     fn reference() -> Reference<Self>;
+
+    /// An equilibrium that the motion oscillates about, if there is one: the linearisation there gives the members with frequencies
+    /// theirs.
+    fn equilibrium(&self) -> Option<Self::PerCoordinate<f64>> {
+        None
+    }
 }
 
 /// A conserved momentum: the moment map of a symmetry, by Noether's theorem.

@@ -41,10 +41,10 @@ function duration(seconds) {
 }
 
 // Figures.
-const WIDTH = 560, HEIGHT = 380, LEFT = 52, RIGHT = 40, TOP = 10, BOTTOM = 42;
+const WIDTH = 560, HEIGHT = 380, LEFT = 52, TOP = 10, BOTTOM = 42;
 
-/** Curves `{name, points: [[x, y], ..], label}` on axes of which y, and x unless it is linear, are logarithmic. */
-function plot({ title, x: xTitle, y: yTitle, curves, linearX = false, floor }) {
+/** Curves `{name, points: [[x, y], ..], label, labelAt}` on axes of which y, and x unless it is linear, are logarithmic. */
+function plot({ title, x: xTitle, y: yTitle, curves, linearX = false, right: RIGHT = 24 }) {
   const figure = element("figure", {}, element("figcaption", {}, title));
   const visible = curves.filter((curve) => shown.has(curve.name));
   const points = visible.flatMap((curve) => curve.points).filter(([, y]) => y > 0);
@@ -74,7 +74,7 @@ function plot({ title, x: xTitle, y: yTitle, curves, linearX = false, floor }) {
   drawing.append(svg("path", { d: `M${LEFT} ${TOP}V${HEIGHT - BOTTOM}H${WIDTH - RIGHT}`, fill: "none", class: "axis" }),
     svg("text", { x: (LEFT + WIDTH - RIGHT) / 2, y: HEIGHT - 8, "text-anchor": "middle" }, xTitle),
     svg("text", { transform: `translate(12 ${(TOP + HEIGHT - BOTTOM) / 2}) rotate(-90)`, "text-anchor": "middle" }, yTitle));
-  const taken = [];
+  const labels = [], taken = [];
   for (const curve of visible) {
     const { colour, dash } = look.get(curve.name);
     const spots = curve.points.filter(([x, y]) => y > 0 && (linearX || x > 0)).map(([x, y]) => [px(x), py(y), x, y]);
@@ -88,8 +88,10 @@ function plot({ title, x: xTitle, y: yTitle, curves, linearX = false, floor }) {
         drawing.append(dot);
       }
     }
-    if (curve.label) place(drawing, curve.label, spots.at(-1), colour, taken);
+    if (curve.label) labels.push([curve.label, spots.at(curve.labelAt ?? -1), colour]);
   }
+  // On top of all curves.
+  for (const label of labels) place(drawing, ...label, taken);
   return figure;
 }
 
@@ -146,6 +148,8 @@ function sceneSection(scene) {
   const orders = new Map(of(results.orders).map((fit) => [fit.method, fit]));
   const verdict = of(results.verdicts)[0];
   const figures = element("div", { class: "figures" });
+  // Runs that end farther off than the configuration is long would only stretch the axes.
+  const isUseful = (row) => row.seconds !== null && row.position_error !== null && row.position_error <= scene.size;
   const section = element("section", { id: scene.name, "aria-labelledby": `${scene.name}-title` },
     element("h2", { id: `${scene.name}-title` }, scene.name),
     element("p", {}, scene.summary),
@@ -157,14 +161,13 @@ function sceneSection(scene) {
     for (const [key, title, yTitle] of QUANTITIES) {
       const curves = results.methods.map(({ name }) => ({
         name,
-        points: rows.filter((row) => row.method === name && row.seconds !== null && row[key] !== null).map((row) => [row.seconds, row[key]]),
-        label: key === "position_error" && orders.has(name) ? orders.get(name).order.toFixed(2) : "",
+        ...curve(rows.filter((row) => row.method === name && isUseful(row)), key, orders.get(name)),
       })).filter((curve) => curve.points.length > 0);
       if (curves.length > 0) figures.append(plot({ title, x: "run time in seconds", y: yTitle, curves }));
     }
     const long = of(results.long_runs);
     if (long.length > 0) {
-      figures.append(plot({ title: "Energy error over a long time, at about equal run time", x: "time", y: "|H − H₀|", linearX: true,
+      figures.append(plot({ title: "Energy error over a long time, at about equal run time", x: "time", y: "|H − H₀|", linearX: true, right: 110,
         curves: long.map((run) => ({ name: run.method, points: run.times.map((t, i) => [t, run.energy_errors[i]]), label: run.method })) }));
     }
   };
@@ -173,6 +176,17 @@ function sceneSection(scene) {
   section.append(table("Times and orders", timesHead(), timesRows(rows, verdict, orders)),
     table("All runs", Object.keys(results.rows[0]).filter((key) => key !== "scene"), rows.map((row) => Object.entries(row).filter(([key]) => key !== "scene").map(([, value]) => value))));
   return section;
+}
+
+/** Points of one method, with its fitted order at the finest step of the fit. */
+function curve(rows, key, fit) {
+  const measured = rows.filter((row) => row[key] !== null);
+  const isLabelled = key === "position_error" && fit !== undefined;
+  return {
+    points: measured.map((row) => [row.seconds, row[key]]),
+    label: isLabelled ? fit.order.toFixed(2) : "",
+    labelAt: isLabelled ? measured.findIndex((row) => row.h === fit.to_h) : -1,
+  };
 }
 
 const LEVELS = ["1e-3", "1e-6", "1e-9", "1e-12"];
@@ -215,9 +229,9 @@ function speedups() {
   const bars = results.speedups.map((s) => ({ scene: s.scene, time: s.generic_ns / s.specialised_ns,
     instructions: s.specialised_instructions ? s.generic_instructions / s.specialised_instructions : null }));
   if (bars.length === 0) return element("p", {}, "Not measured.");
-  const row = 22, left = 170, width = 900, height = bars.length * row + 20;
+  const row = 22, left = 170, width = 1000, height = bars.length * row + 20;
   const most = Math.max(...bars.flatMap((bar) => [bar.time, bar.instructions ?? 0]));
-  const length = (value) => value / most * (width - left - 190);
+  const length = (value) => value / most * (width - left - 230);
   const drawing = svg("svg", { viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": "Speed-up of the specialised over the generic path, by scene; the numbers stand beside the bars." });
   bars.forEach((bar, i) => {
     const y = 8 + i * row;
