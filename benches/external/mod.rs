@@ -5,9 +5,11 @@
 //! differentiated twice and drift within its tolerance.
 
 mod dop853;
+mod heyoka;
 mod index_one;
 
 pub use dop853::{Dop853Error, dop853};
+pub use heyoka::{HeyokaError, HeyokaRow, heyoka};
 
 /// What the error of a step of size `h` may be, in every component `y`: `absolute + relative · |y|`.
 #[derive(Clone, Copy, Debug, PartialEq)]
