@@ -1,4 +1,5 @@
-//! What a step costs: steps written by hand for one scene each, and the programs that time steps beside them (the bench
-//! targets and `step_cost`).
+//! What the programs of this package share: steps written by hand for one scene each, and methods beside methods on the scenes of the
+//! gallery.
 
+pub mod comparison;
 pub mod hand_written;

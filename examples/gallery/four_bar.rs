@@ -81,7 +81,7 @@ impl Scene for FourBar {
 
     fn reference() -> Reference<Self> {
         Reference {
-            origin: ReferenceOrigin::DoubleDouble,
+            origin: ReferenceOrigin::Octuple,
             q: [0.6282196014143898, 0.4096829657170838, 2.34956968671394, 2.2226787968869273],
             v: [5.771366136510158, -8.849978244881973, -4.254544774858972, 0.6691294694226309],
         }

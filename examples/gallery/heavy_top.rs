@@ -92,7 +92,7 @@ impl Scene for HeavyTop {
 
     fn reference() -> Reference<Self> {
         Reference {
-            origin: ReferenceOrigin::DoubleDouble,
+            origin: ReferenceOrigin::Octuple,
             q: [
                 -0.5635470664204821,
                 0.2710472527007748,

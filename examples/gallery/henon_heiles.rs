@@ -48,7 +48,7 @@ impl Scene for HenonHeiles {
 
     fn reference() -> Reference<Self> {
         Reference {
-            origin: ReferenceOrigin::DoubleDouble,
+            origin: ReferenceOrigin::Octuple,
             q: [0.09590214648832247, 0.30267980030079233],
             v: [0.2843540209531449, 0.02414332445903371],
         }

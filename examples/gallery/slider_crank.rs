@@ -68,7 +68,7 @@ impl Scene for SliderCrank {
 
     fn reference() -> Reference<Self> {
         Reference {
-            origin: ReferenceOrigin::DoubleDouble,
+            origin: ReferenceOrigin::Octuple,
             q: [20.274132506965127, -0.24992597167293956, 1.0053555497602713],
             v: [6.1109488534073755, -0.22972765603172873, -1.5682536710032122],
         }

@@ -1,0 +1,25 @@
+//! Methods beside methods on the scenes of the gallery: the common ground of the programs that compare.
+//!
+//! [`methods`] is the table of methods, generic over the scene. [`scenes`] joins it with a scene and erases the type; what lies above
+//! ([`measure`]) sees solvers and numbers only, and is compiled once.
+
+pub mod measure;
+pub mod methods;
+pub mod scenes;
+
+/// A method that is not there, with what it takes to have it.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Refusal {
+    /// Left out when the program was compiled.
+    #[error("not built: needs the feature `{feature}`")]
+    NotBuilt {
+        /// Name of the feature.
+        feature: &'static str,
+    },
+    /// Not on this machine, or not asked for.
+    #[error("not run: {reason}")]
+    NotRun {
+        /// Why.
+        reason: String,
+    },
+}

@@ -1,0 +1,71 @@
+//! What the specialised code of a scene gains over the generic path: the midpoint rule on both, with the same steps.
+
+use std::process::Command;
+use std::time::Instant;
+
+use evi_benches::comparison::scenes::AnyScene;
+
+use crate::results::{Row, Speedup};
+
+const SPECIALISED: &str = "midpoint";
+const GENERIC: &str = "midpoint_generic";
+const REPETITIONS: usize = 9;
+/// Steps of a counted run; a second one takes twice as many.
+const COUNTED_STEPS: u64 = 40;
+
+/// At the coarsest step size that both paths have reached the horizon with, if there is one.
+pub(crate) fn speedup(scene: &dyn AnyScene, rows: &[Row], quick: bool) -> Option<Speedup> {
+    let steps_of = |method: &str| -> Vec<f64> {
+        let reached = rows.iter().filter(|row| row.method == method && row.position_error.is_some());
+        reached.filter_map(|row| row.h).collect()
+    };
+    let generic_steps = steps_of(GENERIC);
+    let h = steps_of(SPECIALISED).into_iter().find(|h| generic_steps.contains(h))?;
+    let (specialised, generic) = (number(scene, SPECIALISED)?, number(scene, GENERIC)?);
+    let mut fastest = [f64::INFINITY; 2];
+    for _ in 0..REPETITIONS {
+        for (fastest, method) in fastest.iter_mut().zip([specialised, generic]) {
+            let mut solver = scene.start(method, h).ok()?;
+            let clock = Instant::now();
+            solver.advance_to(scene.facts().horizon).ok()?;
+            *fastest = fastest.min(1e9 * clock.elapsed().as_secs_f64() / solver.steps() as f64);
+        }
+    }
+    let name = scene.facts().name;
+    let count = |method| if quick { None } else { instructions(name, method, h) };
+    Some(Speedup {
+        scene: name.into(),
+        method: SPECIALISED.into(),
+        h,
+        specialised_ns: fastest[0],
+        generic_ns: fastest[1],
+        specialised_instructions: count(SPECIALISED),
+        generic_instructions: count(GENERIC),
+    })
+}
+
+fn number(scene: &dyn AnyScene, method: &str) -> Option<usize> {
+    scene.methods().iter().position(|facts| facts.name == method)
+}
+
+/// What this program does when it runs itself under valgrind: so many steps of a method on a scene.
+pub(crate) fn take_steps(scene: &dyn AnyScene, method: &str, h: f64, steps: u64) -> Option<f64> {
+    let mut solver = scene.start(number(scene, method)?, h).ok()?;
+    solver.advance_to(h * steps as f64).ok()?;
+    solver.q().first().copied()
+}
+
+/// Instructions of one step, counted by valgrind's callgrind as the difference of two runs.
+fn instructions(scene: &str, method: &str, h: f64) -> Option<f64> {
+    let count = |steps: u64| -> Option<f64> {
+        let output = Command::new("valgrind")
+            .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
+            .arg(std::env::current_exe().ok()?)
+            .args(["--counted", scene, method, &h.to_string(), &steps.to_string()])
+            .output()
+            .ok()?;
+        let report = String::from_utf8(output.stderr).ok()?;
+        report.split("Collected :").nth(1)?.split_whitespace().next()?.parse().ok()
+    };
+    Some((count(2 * COUNTED_STEPS)? - count(COUNTED_STEPS)?) / COUNTED_STEPS as f64)
+}
