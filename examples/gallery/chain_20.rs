@@ -1,4 +1,4 @@
-//! Hanging chain of twenty point masses: 20 rods in 40 coordinates ([the family](crate::chain)).
+//! Hanging chain of twenty point masses: 20 rods in 40 coordinates of the family in `chain.rs`.
 
 use evi_core::prelude::*;
 

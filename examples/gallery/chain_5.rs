@@ -1,4 +1,4 @@
-//! Hanging chain of five point masses: 5 rods in 10 coordinates ([the family](crate::chain)).
+//! Hanging chain of five point masses: 5 rods in 10 coordinates of the family in `chain.rs`.
 
 use evi_core::prelude::*;
 
