@@ -1,9 +1,8 @@
 //! Hanging chains: point masses in a line, joined by massless rods, the first on a pivot at the origin; released from the horizontal.
 //!
 //! A chain has `N` rods in `2N` Cartesian coordinates. Its matrix of constraints is banded: a rod shares coordinates with its
-//! neighbours alone. Energy is conserved. With more and more rods the chain becomes a rope, whose end is faster than free fall. A
-//! classical family of tests for constraints (Hairer & Wanner, *Solving Ordinary Differential Equations II*, Springer 1996, sec. VII.7,
-//! has the plane pendulum that its links are made of).
+//! neighbours alone. Energy is conserved. With more and more rods the chain becomes a rope, whose end falls faster than a free body
+//! (Tomaszewski, Pieranski, Géminard, *The motion of a freely falling chain tip*, Am. J. Phys. 74 (2006) 776).
 
 /// A chain: its name, its first point mass and rod, then every point mass and rod with the point mass before it.
 macro_rules! chain {

@@ -1,4 +1,4 @@
-//! Hanging chain of twenty point masses: 20 rods in 40 coordinates ([the family](crate::chain)).
+//! Hanging chain of twenty point masses: 20 rods in 40 coordinates of the family in `chain.rs`.
 
 use evi_core::prelude::*;
 
@@ -32,7 +32,7 @@ chain! {
 impl Scene for Chain20 {
     const NAME: &'static str = "chain_20";
     const SUMMARY: &'static str = "Twenty point masses on rods in a line, released from the horizontal.";
-    const ORIGIN: &'static str = "N-fold pendulum in Cartesian coordinates, mass and length 1 in all";
+    const ORIGIN: &'static str = "Tomaszewski, Pieranski, Géminard, Am. J. Phys. 74 (2006) 776, for rods of equal length; mass and length 1 in all";
     const HORIZON: f64 = 0.5;
     const CONSERVES_ENERGY: bool = true;
 

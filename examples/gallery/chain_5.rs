@@ -1,4 +1,4 @@
-//! Hanging chain of five point masses: 5 rods in 10 coordinates ([the family](crate::chain)).
+//! Hanging chain of five point masses: 5 rods in 10 coordinates of the family in `chain.rs`.
 
 use evi_core::prelude::*;
 
@@ -17,7 +17,7 @@ chain! {
 impl Scene for Chain5 {
     const NAME: &'static str = "chain_5";
     const SUMMARY: &'static str = "Five point masses on rods in a line, released from the horizontal.";
-    const ORIGIN: &'static str = "N-fold pendulum in Cartesian coordinates, mass and length 1 in all";
+    const ORIGIN: &'static str = "Tomaszewski, Pieranski, Géminard, Am. J. Phys. 74 (2006) 776, for rods of equal length; mass and length 1 in all";
     const HORIZON: f64 = 1.0;
     const CONSERVES_ENERGY: bool = true;
 
