@@ -7,6 +7,7 @@ use evi_core::prelude::*;
 use evi_examples::Scene;
 
 use super::Refusal;
+use crate::external::{Tolerances, dop853};
 
 /// A method and how it starts on scenes of type `S`.
 pub struct Method<S> {
@@ -42,6 +43,8 @@ pub enum Path {
     Generic,
     /// A solver from elsewhere; its right side are the specialised kernels.
     External,
+    /// A program from elsewhere, with its own equations; it gives ends of motions, not solvers.
+    Program,
 }
 
 impl Path {
@@ -50,7 +53,7 @@ impl Path {
         match self {
             Self::Specialised => "specialised",
             Self::Generic => "generic",
-            Self::External => "external",
+            Self::External | Self::Program => "external",
         }
     }
 }
@@ -138,6 +141,20 @@ pub fn all<S: Scene>() -> Vec<Method<S>> {
             },
         )
         .on(Path::Generic),
+        baseline(
+            "dop853",
+            8,
+            "explicit Runge-Kutta, index-1 equations, crate ode_solvers",
+            |s: &S, tolerance| {
+                let (q, v) = s.standard_motion();
+                Ok(dop853(s, &q, &v, Tolerances::both(tolerance))?)
+            },
+        )
+        .on(Path::External),
+        baseline("heyoka", 20, "Taylor series, index-1 equations, compiled by heyoka", |_, _| {
+            Err(Refusal::NotRun { reason: "a program of its own, asked for with --peers".into() }.into())
+        })
+        .on(Path::Program),
     ]
 }
 
@@ -154,8 +171,12 @@ impl<S> Method<S> {
         Self { facts: MethodFacts { name, path, role, order, resolution, summary }, start }
     }
 
-    fn on(mut self, path: Path) -> Self {
+    /// On another path; solvers from elsewhere choose their steps by a tolerance.
+    const fn on(mut self, path: Path) -> Self {
         self.facts.path = path;
+        if matches!(path, Path::External | Path::Program) {
+            self.facts.resolution = Resolution::Tolerance;
+        }
         self
     }
 }

@@ -5,7 +5,10 @@ use evi_core::comparison::{Failure, Solver};
 use evi_core::mechanics::Mechanics;
 use evi_examples::{ReferenceOrigin, Scene, Visitor};
 
+use super::Refusal;
+use super::measure::Outcome;
 use super::methods::{self, Method, MethodFacts};
+use crate::external::{HeyokaError, HeyokaRow, heyoka};
 
 /// A scene of the gallery, with every method.
 pub trait AnyScene {
@@ -20,6 +23,12 @@ pub trait AnyScene {
     /// # Errors
     /// Why the method does not start on this scene.
     fn start(&self, method: usize, resolution: f64) -> Result<Box<dyn Solver>, Failure>;
+
+    /// Runs of a method on [`Path::Program`](super::methods::Path::Program), each with its tolerance.
+    ///
+    /// # Errors
+    /// Why there are none.
+    fn runs_of_program(&self, tolerances: &[f64]) -> Result<Vec<(f64, Outcome)>, Failure>;
 
     /// By how much the solver violates what the motion keeps.
     fn deviation(&self, solver: &dyn Solver) -> Deviation;
@@ -148,30 +157,79 @@ impl<S: Scene> AnyScene for Typed<S> {
         (self.methods[method].start)(&self.system, resolution)
     }
 
+    fn runs_of_program(&self, tolerances: &[f64]) -> Result<Vec<(f64, Outcome)>, Failure> {
+        let (q, v) = self.system.standard_motion();
+        let start = (q.as_ref(), v.as_ref());
+        let rows =
+            heyoka(S::NAME, &self.system, start, S::HORIZON, tolerances, REPETITIONS).map_err(refused)?;
+        let outcome = |row: HeyokaRow| {
+            let (q, v) = (array::<S>(&row.q), array::<S>(&row.v));
+            let p = self.mechanics.momentum_at(S::HORIZON, &q, &v);
+            let distance = self.distance(&q, &v);
+            let mut deviation = self.deviation_at(S::HORIZON, &q, &v, p.as_ref());
+            deviation.energy = deviation.energy.or(Some(distance.energy));
+            let outcome = Outcome {
+                seconds: 1e-6 * row.microseconds,
+                seconds_spread: None,
+                steps: row.steps,
+                position_error: distance.position,
+                deviation,
+            };
+            (row.tolerance, outcome)
+        };
+        Ok(rows.into_iter().map(outcome).collect())
+    }
+
     fn deviation(&self, solver: &dyn Solver) -> Deviation {
-        let (t, q, v) = (solver.t(), array::<S>(solver.q()), array::<S>(solver.v()));
+        self.deviation_at(solver.t(), &array::<S>(solver.q()), &array::<S>(solver.v()), solver.p())
+    }
+
+    fn distance_from_reference(&self, solver: &dyn Solver) -> Distance {
+        self.distance(&array::<S>(solver.q()), &array::<S>(solver.v()))
+    }
+}
+
+/// Repetitions of a program's runs, of which the fastest counts.
+const REPETITIONS: u32 = 20;
+
+/// A program that is not there is no failure of the comparison.
+fn refused(error: HeyokaError) -> Failure {
+    match error {
+        HeyokaError::NotInstalled { .. } | HeyokaError::UnknownScene { .. } => {
+            Refusal::NotRun { reason: error.to_string() }.into()
+        }
+        error => error.into(),
+    }
+}
+
+impl<S: Scene> Typed<S> {
+    fn deviation_at(
+        &self,
+        t: f64,
+        q: &S::PerCoordinate<f64>,
+        v: &S::PerCoordinate<f64>,
+        p: &[f64],
+    ) -> Deviation {
         let momenta = S::MOMENTA.iter().zip(&self.start_momenta);
+        let mechanics = &self.mechanics;
         Deviation {
-            energy: S::CONSERVES_ENERGY
-                .then(|| (self.mechanics.energy_at(t, &q, &v) - self.start_energy).abs()),
-            constraint: largest(self.mechanics.constraint_residual_at(t, &q).as_ref().iter().copied()),
+            energy: S::CONSERVES_ENERGY.then(|| (mechanics.energy_at(t, q, v) - self.start_energy).abs()),
+            constraint: largest(mechanics.constraint_residual_at(t, q).as_ref().iter().copied()),
             hidden_constraint: largest(
-                self.mechanics.hidden_constraint_residual_at(t, &q, &v).as_ref().iter().copied(),
+                mechanics.hidden_constraint_residual_at(t, q, v).as_ref().iter().copied(),
             ),
             momentum: largest(
-                momenta
-                    .map(|(momentum, start)| (momentum.value)(&self.system, solver.q(), solver.p()) - start),
+                momenta.map(|(momentum, start)| (momentum.value)(&self.system, q.as_ref(), p) - start),
             ),
         }
     }
 
-    fn distance_from_reference(&self, solver: &dyn Solver) -> Distance {
+    fn distance(&self, q: &S::PerCoordinate<f64>, v: &S::PerCoordinate<f64>) -> Distance {
         let reference = S::reference();
         let energy = |q, v| self.mechanics.energy_at(S::HORIZON, q, v);
-        let (q, v) = (array::<S>(solver.q()), array::<S>(solver.v()));
         Distance {
             position: distance(q.as_ref(), reference.q.as_ref()),
-            energy: (energy(&q, &v) - energy(&reference.q, &reference.v)).abs(),
+            energy: (energy(q, v) - energy(&reference.q, &reference.v)).abs(),
         }
     }
 }

@@ -74,7 +74,7 @@ fn run(options: Options) -> Result<Ending, Box<dyn Error>> {
         return Ok(Ending::Complete);
     }
     let methods = chosen_methods(&*scenes[0], &options.method)?;
-    let thoroughness = Thoroughness::new(options.quick);
+    let thoroughness = Thoroughness::new(options.quick, options.peers);
     let budget = options.time_budget.map_or(thoroughness.standard_budget(), Duration::from_secs);
     files::prepare(&options.out)?;
     let mut journal = Journal::open(&options.out, options.quick, Machine::present())?;

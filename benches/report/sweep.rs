@@ -12,8 +12,8 @@ use evi_core::integrator::StartError;
 
 use evi_benches::comparison::Refusal;
 use evi_benches::comparison::measure::{Effort, long_run, measure};
-use evi_benches::comparison::methods::{MethodFacts, Resolution};
-use evi_benches::comparison::scenes::AnyScene;
+use evi_benches::comparison::methods::{MethodFacts, Path, Resolution};
+use evi_benches::comparison::scenes::{AnyScene, SceneFacts};
 
 use crate::journal::{Finished, Journal, Piece};
 use crate::results::{LongRun, Row};
@@ -23,6 +23,8 @@ use crate::speedup::speedup;
 #[derive(Clone, Copy)]
 pub(crate) struct Thoroughness {
     pub(crate) quick: bool,
+    /// Whether programs outside of this one run too.
+    peers: bool,
     effort: Effort,
     /// Ratio of neighbouring numbers of steps.
     refinement: f64,
@@ -33,10 +35,11 @@ pub(crate) struct Thoroughness {
 }
 
 impl Thoroughness {
-    pub(crate) fn new(quick: bool) -> Self {
+    pub(crate) fn new(quick: bool, peers: bool) -> Self {
         if quick {
             Self {
                 quick,
+                peers,
                 effort: Effort { samples: 3, sample_seconds: 5e-5, seconds: 5e-4 },
                 refinement: 2.0,
                 longest_sweep: Duration::from_millis(150),
@@ -45,6 +48,7 @@ impl Thoroughness {
         } else {
             Self {
                 quick,
+                peers,
                 effort: Effort { samples: 5, sample_seconds: 5e-4, seconds: 1e-2 },
                 refinement: 2.0_f64.powf(0.25),
                 longest_sweep: Duration::from_secs(4),
@@ -187,6 +191,9 @@ impl Work<'_> {
         // Some methods end early: the average piece may take more than its part.
         let allowed = (2 * self.left).min(longest_sweep);
         let (scene, facts) = (self.scene.facts(), self.scene.methods()[method]);
+        if facts.path == Path::Program && self.thoroughness.peers {
+            return self.sweep_of_program(&scene, &facts);
+        }
         let begin = Instant::now();
         let mut rows = Vec::new();
         let mut progress = Progress::new(scene.size);
@@ -219,6 +226,20 @@ impl Work<'_> {
             predicted = clock.elapsed().mul_f64(refinement);
         }
         rows
+    }
+
+    /// Runs of a program outside of this one, all at once.
+    fn sweep_of_program(&self, scene: &SceneFacts, facts: &MethodFacts) -> Vec<Row> {
+        let tolerances: Vec<f64> = resolutions(facts, scene.horizon, self.thoroughness.refinement).collect();
+        match self.scene.runs_of_program(&tolerances) {
+            Ok(runs) => runs
+                .into_iter()
+                .map(|(tolerance, outcome)| {
+                    Row::without_run(scene, facts, "ok").at(facts.resolution, tolerance).with(outcome)
+                })
+                .collect(),
+            Err(failure) => vec![Row::without_run(scene, facts, failure.to_string())],
+        }
     }
 
     /// Energy over a time much longer than the horizon, by the run of the sweep that takes about as long as the midpoint rule takes to

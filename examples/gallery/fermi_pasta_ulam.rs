@@ -85,4 +85,8 @@ impl Scene for FermiPastaUlam {
             ],
         }
     }
+
+    fn equilibrium(&self) -> Option<[f64; 6]> {
+        Some([0.0; 6])
+    }
 }

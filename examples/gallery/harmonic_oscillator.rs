@@ -57,4 +57,8 @@ impl Scene for HarmonicOscillator {
     fn reference() -> Reference<Self> {
         Reference { origin: ReferenceOrigin::ClosedForm, q: [0.8645546871772058], v: [-1.4178084396418633] }
     }
+
+    fn equilibrium(&self) -> Option<[f64; 1]> {
+        Some([0.0])
+    }
 }

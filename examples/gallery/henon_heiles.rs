@@ -53,4 +53,8 @@ impl Scene for HenonHeiles {
             v: [0.2843540209531449, 0.024143324459033704],
         }
     }
+
+    fn equilibrium(&self) -> Option<[f64; 2]> {
+        Some([0.0; 2])
+    }
 }

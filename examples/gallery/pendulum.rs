@@ -50,4 +50,8 @@ impl Scene for Pendulum {
     fn reference() -> Reference<Self> {
         Reference { origin: ReferenceOrigin::ClosedForm, q: [0.015728632141429454], v: [5.270898793229828] }
     }
+
+    fn equilibrium(&self) -> Option<[f64; 1]> {
+        Some([0.0])
+    }
 }

@@ -61,4 +61,8 @@ impl Scene for PendulumCartesian {
             v: [5.270246823189803, 0.08290060994625296],
         }
     }
+
+    fn equilibrium(&self) -> Option<[f64; 2]> {
+        Some([0.0, -self.l])
+    }
 }

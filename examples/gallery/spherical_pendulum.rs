@@ -60,4 +60,8 @@ impl Scene for SphericalPendulum {
             v: [-1.768443913127701, -1.6566882725263228, -1.0995168960450608],
         }
     }
+
+    fn equilibrium(&self) -> Option<[f64; 3]> {
+        Some([0.0, 0.0, -self.l])
+    }
 }

@@ -60,4 +60,8 @@ impl Scene for StiffSpringPendulum {
             v: [-0.10395435853697933, 1.3530201843563137],
         }
     }
+
+    fn equilibrium(&self) -> Option<[f64; 2]> {
+        Some([0.0, -self.l - self.m * self.g / self.k])
+    }
 }
