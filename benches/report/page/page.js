@@ -31,7 +31,7 @@ function short(value) {
   if (value === null || value === undefined) return "";
   if (typeof value !== "number") return String(value);
   if (Number.isInteger(value) && Math.abs(value) < 1e7) return String(value);
-  return Math.abs(value) >= 0.01 && Math.abs(value) < 1e4 ? value.toPrecision(4) : value.toExponential(2);
+  return Math.abs(value) >= 0.01 && Math.abs(value) < 1e4 ? String(Number(value.toPrecision(4))) : value.toExponential(2);
 }
 function duration(seconds) {
   for (const [unit, size] of [["s", 1], ["ms", 1e-3], ["µs", 1e-6]]) {
@@ -168,7 +168,8 @@ function sceneSection(scene) {
     const long = of(results.long_runs);
     if (long.length > 0) {
       figures.append(plot({ title: "Energy error over a long time, at about equal run time", x: "time", y: "|H − H₀|", linearX: true, right: 110,
-        curves: long.map((run) => ({ name: run.method, points: run.times.map((t, i) => [t, run.energy_errors[i]]), label: run.method })) }));
+        curves: long.map((run) => ({ name: run.method, points: run.times.map((t, i) => [t, run.energy_errors[i]]),
+          label: run.status === "ok" ? run.method : `${run.method} fails` })) }));
     }
   };
   draw();
