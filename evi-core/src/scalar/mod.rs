@@ -113,6 +113,9 @@ primitive_scalar!(f32:
 
 #[cfg(feature = "generic")]
 mod dual;
+mod tangent;
+
+pub(crate) use tangent::Tangent;
 
 #[cfg(test)]
 mod tests {
