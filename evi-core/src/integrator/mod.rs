@@ -12,6 +12,7 @@ mod evi;
 mod galerkin;
 mod matrix_evi;
 mod multipliers;
+mod positions;
 mod run;
 mod simulation;
 #[cfg(feature = "std")]

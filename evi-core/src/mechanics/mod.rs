@@ -12,6 +12,7 @@ mod folded_step;
 mod forces;
 #[cfg(feature = "std")]
 mod galerkin_equations;
+mod implicit_step;
 mod impulse_step;
 mod kick_drift_kick;
 mod leapfrog_step;
@@ -23,6 +24,7 @@ mod momentum;
 mod observables;
 mod quadratic_part;
 mod round_off;
+mod separable_action;
 mod state;
 mod step_equations;
 
@@ -33,6 +35,7 @@ pub(crate) use folded_step::FoldedStep;
 pub(crate) use forces::{ForceDerivatives, ForcePoint};
 #[cfg(feature = "std")]
 pub(crate) use galerkin_equations::{GalerkinAction, Points};
+pub(crate) use implicit_step::{ImplicitStep, StepSolution, StepStart};
 pub(crate) use impulse_step::ImpulseStep;
 pub(crate) use kick_drift_kick::KickDriftKick;
 pub(crate) use leapfrog_step::LeapfrogStep;
@@ -47,8 +50,9 @@ pub use quadratic_part::QuadraticPart;
 pub(crate) use quadratic_part::StepModes;
 pub use round_off::LostDigits;
 pub(crate) use round_off::{Dropped, Lost, RoundOff, Rounded, Sum};
+pub(crate) use separable_action::SeparableAction;
 pub use state::State;
-pub(crate) use step_equations::{DiscreteLagrangian, Slot, StepStart};
+pub(crate) use step_equations::{DiscreteLagrangian, Slot};
 
 use crate::array::Array;
 use crate::linear::Kkt;
