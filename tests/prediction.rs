@@ -2,7 +2,8 @@
 
 use evi_core::prelude::*;
 use evi_examples::{
-    DoublePendulum, DrivenPendulum, GRAVITY, Pendulum, SphericalPendulum, Start, StiffSpringPendulum,
+    DoublePendulum, DrivenPendulum, GRAVITY, HeavyTop, Pendulum, Scene, SphericalPendulum, Start,
+    StiffSpringPendulum,
 };
 
 /// Steps of a run, each compared with the same step of a run that begins there, without a past.
@@ -82,10 +83,14 @@ fn a_past_lets_no_step_pass_or_fail_that_would_not_without() {
         if h < 0.3 {
             check("spherical pendulum", spherical, Evi::midpoint(h), spherical.one_radian());
         } else {
-            // A known limitation: the multipliers that the past predicts lead to another root than those from zero.
+            // A known limitation: where two roots all but meet, the one that is found depends on where the search begins.
             let known = compare(spherical, Evi::midpoint(h), spherical.one_radian(), 2000);
-            assert!(known.failed && known.distance > 0.1, "{}", known.distance);
+            assert!(known.taken > 100 && known.distance > 0.1, "{}", known.distance);
         }
     }
+    let top = HeavyTop::standard();
+    let (q, v) = top.standard_motion();
+    // 0.8 radians of spin in a step.
+    check("heavy top, Simpson", top, Evi::simpson(1.0 / 250.0), Start { q, v });
     assert!(failed > 0, "no step is near to failure");
 }
