@@ -22,7 +22,7 @@ pub use compensated::{Compensable, CompensableStep, Compensated, CompensatedStep
 pub use composition::{Composed, ComposedStep, Composition, Symmetric};
 pub use evi::{Evi, EviStep};
 #[cfg(feature = "std")]
-pub use galerkin::{Galerkin, GalerkinStep};
+pub use galerkin::{Galerkin, GalerkinStep, Iteration};
 pub use matrix_evi::{
     LinearisedAlong, LinearisedAt, MatrixEvi, MatrixEviStep, QuadraticModel, StepMode, Stiffness,
 };

@@ -14,6 +14,8 @@ mod forces;
 mod galerkin_equations;
 mod impulse_step;
 mod kick_drift_kick;
+#[cfg(feature = "std")]
+mod lane_step;
 mod leapfrog_step;
 mod legendre;
 mod linearisation;
@@ -35,6 +37,8 @@ pub(crate) use forces::{ForceDerivatives, ForcePoint};
 pub(crate) use galerkin_equations::{GalerkinAction, Points};
 pub(crate) use impulse_step::ImpulseStep;
 pub(crate) use kick_drift_kick::KickDriftKick;
+#[cfg(feature = "std")]
+pub(crate) use lane_step::{FirstGuess, LaneEnd, LaneStep, Passes};
 pub(crate) use leapfrog_step::LeapfrogStep;
 pub(crate) use legendre::ConstantLegendre;
 pub use linearisation::Linearisation;

@@ -113,6 +113,15 @@ primitive_scalar!(f32:
 
 #[cfg(feature = "generic")]
 mod dual;
+#[cfg(feature = "std")]
+mod instruction_set;
+mod lanes;
+
+#[cfg(feature = "std")]
+pub use instruction_set::InstructionSet;
+#[cfg(feature = "std")]
+pub(crate) use instruction_set::LaneOperation;
+pub use lanes::{LANES, Lanes};
 
 #[cfg(test)]
 mod tests {

@@ -10,6 +10,8 @@ mod estimate;
 mod fitted;
 mod frequency;
 mod growth;
+#[cfg(feature = "std")]
+mod lane_tables;
 mod mode;
 mod mollifier;
 #[cfg(feature = "std")]
@@ -28,6 +30,8 @@ pub use estimate::curvature_frequency;
 pub use fitted::Fitted;
 pub use frequency::Frequency;
 pub use growth::growth_rate;
+#[cfg(feature = "std")]
+pub(crate) use lane_tables::{Columns, LaneTables, PAST};
 pub(crate) use mode::ModeFlow;
 pub use mollifier::Mollifier;
 #[cfg(feature = "std")]
