@@ -10,6 +10,8 @@ mod curves;
 mod evi;
 #[cfg(feature = "std")]
 mod galerkin;
+#[cfg(feature = "std")]
+mod gauss;
 mod matrix_evi;
 mod multipliers;
 mod run;
@@ -23,6 +25,8 @@ pub use composition::{Composed, ComposedStep, Composition, Symmetric};
 pub use evi::{Evi, EviStep};
 #[cfg(feature = "std")]
 pub use galerkin::{Galerkin, GalerkinStep, Iteration};
+#[cfg(feature = "std")]
+pub use gauss::{Gauss, GaussStep};
 pub use matrix_evi::{
     LinearisedAlong, LinearisedAt, MatrixEvi, MatrixEviStep, QuadraticModel, StepMode, Stiffness,
 };

@@ -11,7 +11,7 @@ mod elimination;
 mod in_place;
 mod kkt;
 #[cfg(feature = "std")]
-mod lane_gram;
+mod lane_ldl;
 mod pivoted;
 mod symmetric_eigen;
 mod triangular;
@@ -27,7 +27,7 @@ pub(crate) use in_place::InPlaceLu;
 pub(crate) use kkt::reciprocal_power_of_two;
 pub(crate) use kkt::{FactoredKkt, Kkt, constraint_index, unknowns};
 #[cfg(feature = "std")]
-pub(crate) use lane_gram::LaneGram;
+pub(crate) use lane_ldl::{LaneGram, LaneMass};
 pub(crate) use pivoted::Pivoted;
 pub(crate) use symmetric_eigen::SymmetricEigen;
 pub(crate) use triangular::Cholesky;

@@ -108,6 +108,7 @@ impl<S: MechanicalSystem, const K: usize> LaneStep<S, K> {
         let is_coupled = |i: usize, j: usize| i == j || !<AsScene as Coupling<S>>::IS_DIAGONAL;
         let inverse_at = |i: usize, j: usize| if is_coupled(i, j) { inverse.at(i, j) } else { 0.0 };
         let couples_all = !<AsMass as Coupling<S>>::IS_DIAGONAL;
+        let coupled = S::STRUCTURE.constraint_graph;
         let entries = S::STRUCTURE.jacobian.q;
         let pairs = entries.iter().flat_map(|a| entries.iter().map(move |b| [*a, *b]));
         Ok(Self {
@@ -116,8 +117,8 @@ impl<S: MechanicalSystem, const K: usize> LaneStep<S, K> {
             legendre: ConstantLegendre::new(mechanics)?,
             tables: LaneTables::new::<K>(h),
             units: Array::from_fn(|i| unit(mass[i][i])),
-            gram: LaneGram::new(couples_all),
-            start_gram: LaneGram::new(couples_all),
+            gram: LaneGram::<S>::new(coupled.iter().copied(), couples_all),
+            start_gram: LaneGram::<S>::new(coupled.iter().copied(), couples_all),
             products: pairs.filter(|[a, b]| a.col == b.col && b.row <= a.row).collect(),
             accelerations: nothing(),
             forces: nothing(),
@@ -350,18 +351,16 @@ impl<S: MechanicalSystem, const K: usize> LaneStep<S, K> {
         accelerations
     }
 
-    /// The largest coordinate that a step from `start` is about to reach, in the same metric.
+    /// What a step from `start` is found to the round-off of, in the same metric.
     #[inline(always)]
     fn reach(&self, start: &State<S>) -> f64 {
         let h = self.tables.nodes.to_array()[K - 1].abs();
-        let mut reach = 0.0;
+        let (mut here, mut way) = (0.0, 0.0);
         for i in 0..S::N_COORDINATES {
-            let coordinate = self.units[i] * (start.q[i].abs() + h * start.v[i].abs());
-            if coordinate > reach {
-                reach = coordinate;
-            }
+            here = larger(self.units[i] * start.q[i].abs(), here);
+            way = larger(self.units[i] * h * start.v[i].abs(), way);
         }
-        reach
+        reach(here, way)
     }
 
     /// `M⁻¹ F` at one node.
@@ -401,7 +400,7 @@ fn nothing<A: Array<Lanes>>() -> A {
 
 /// The product of a table of `K` columns with a vector, added to `start`: two sums that do not wait for each other.
 #[inline(always)]
-fn product<const K: usize, const FUSED: bool>(columns: &Columns, x: Lanes, start: Lanes) -> Lanes {
+pub(super) fn product<const K: usize, const FUSED: bool>(columns: &Columns, x: Lanes, start: Lanes) -> Lanes {
     const SUMS: usize = 2;
     let x = x.to_array();
     let mut sums = [start, Lanes::ZERO];
@@ -473,6 +472,25 @@ fn add_gram<S: MechanicalSystem, const FUSED: bool>(
             }
         }
     }
+}
+
+/// The length whose round-off the points of a step are found to: that of the configuration, less in steps that are short beside it, since what
+/// points are off by, velocities are off by the `h`-th part of.
+#[inline(always)]
+pub(super) fn reach(here: f64, way: f64) -> f64 {
+    /// A step of an eighth of the configuration is not short.
+    const LONG: f64 = 8.0;
+    /// Points are sums of a configuration: closer is not to be had.
+    const CLOSEST: f64 = 1.0 / 16.0;
+    let here = here + way;
+    let limited = if LONG * way < here { LONG * way } else { here };
+    larger(limited, CLOSEST * here)
+}
+
+/// As the machine takes it: one instruction, where `f64::max` looks for a NaN.
+#[inline(always)]
+fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
 }
 
 /// `√mass` as a power of two.

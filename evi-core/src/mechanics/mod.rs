@@ -12,6 +12,8 @@ mod folded_step;
 mod forces;
 #[cfg(feature = "std")]
 mod galerkin_equations;
+#[cfg(feature = "std")]
+mod gauss_passes;
 mod impulse_step;
 mod kick_drift_kick;
 #[cfg(feature = "std")]
@@ -35,6 +37,8 @@ pub(crate) use folded_step::FoldedStep;
 pub(crate) use forces::{ForceDerivatives, ForcePoint};
 #[cfg(feature = "std")]
 pub(crate) use galerkin_equations::{GalerkinAction, Points};
+#[cfg(feature = "std")]
+pub(crate) use gauss_passes::{GaussEnd, GaussGuess, GaussPasses};
 pub(crate) use impulse_step::ImpulseStep;
 pub(crate) use kick_drift_kick::KickDriftKick;
 #[cfg(feature = "std")]

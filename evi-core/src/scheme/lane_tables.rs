@@ -115,7 +115,7 @@ fn integrals<const K: usize>(lobatto: &LobattoNodes<K>) -> [[f64; LANES + 1]; LA
 }
 
 /// `E = K(new, old) (K(old, old) + δ I)⁻¹` with the Gaussian kernel `K`.
-fn prediction<const K: usize>(node: impl Fn(usize) -> f64) -> [Columns; PAST] {
+pub(super) fn prediction<const K: usize>(node: impl Fn(usize) -> f64) -> [Columns; PAST] {
     const MOST: usize = PAST * LANES;
     let old: [f64; MOST] =
         core::array::from_fn(|j| if j < PAST * K { node(j % K) - 1.0 - (j / K) as f64 } else { 0.0 });
@@ -165,11 +165,11 @@ fn solved<const MOST: usize>(n: usize, mut matrix: [[f64; MOST]; MOST], mut rhs:
 }
 
 /// One number per node, zero in lanes without one.
-fn lanes<const K: usize>(value: impl Fn(usize) -> f64) -> Lanes {
+pub(super) fn lanes<const K: usize>(value: impl Fn(usize) -> f64) -> Lanes {
     Lanes::new(core::array::from_fn(|lane| if lane < K { value(lane) } else { 0.0 }))
 }
 
 /// A matrix of `K` rows and columns.
-fn columns<const K: usize>(entry: impl Fn(usize, usize) -> f64) -> Columns {
+pub(super) fn columns<const K: usize>(entry: impl Fn(usize, usize) -> f64) -> Columns {
     core::array::from_fn(|col| if col < K { lanes::<K>(|row| entry(row, col)) } else { Lanes::ZERO })
 }
