@@ -1,4 +1,6 @@
-//! What a step costs: steps written by hand for one scene each, and the programs that time steps beside them (the bench
-//! targets and `step_cost`).
+//! What the programs of this package share: steps written by hand for one scene each, and methods beside methods on the scenes of the
+//! gallery, and solvers of other projects.
 
+pub mod comparison;
+pub mod external;
 pub mod hand_written;

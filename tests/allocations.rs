@@ -11,7 +11,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::hint::black_box;
 
-use evi_core::baseline::{Rattle, Rk4};
+use evi_core::baseline::{GeneralizedAlpha, ImplicitMidpoint, Rattle, Rk4, Shake};
 use evi_core::generic::{GenericEvi, GenericSystem};
 use evi_core::prelude::*;
 use evi_examples::{
@@ -170,6 +170,15 @@ fn no_step_of_a_baseline_allocates() {
     check(DOUBLE, Rk4::new(0.01), mild());
     check(SPHERICAL, Rk4::new(0.01), SPHERICAL.one_radian());
     check(SPRING, Rk4::new(0.01), SPRING.horizontal());
+    check(DOUBLE, Shake::new(0.01), mild());
+    check(OSCILLATOR, Shake::new(0.01), SWING);
+    check(DOUBLE, ImplicitMidpoint::new(0.01), mild());
+    check(SPRING, ImplicitMidpoint::new(0.01), SPRING.horizontal());
+    check(DOUBLE, ImplicitMidpoint::new(0.01).composed(Composition::suzuki_4()), mild());
+    check(DOUBLE, GeneralizedAlpha::new(0.01), mild());
+    check(SPRING, GeneralizedAlpha::new(0.01), SPRING.horizontal());
+    // Steps that need the curvature of the constraints.
+    check(DOUBLE, GeneralizedAlpha::new(0.05), DOUBLE.horizontal());
 }
 
 #[test]

@@ -69,7 +69,8 @@ mod agreement {
             tally.corrections as f64 / STEPS as f64
         );
         assert_eq!((tally.restarts, tally.newton_steps), (0, 0), "vacuous: not by passes");
-        assert!(roundings <= 32.0, "{roundings:.0} roundings");
+        // Two iterations: 2.3 measured.
+        assert!(roundings <= 4.0, "{roundings:.0} roundings");
     }
 
     #[test]
@@ -176,12 +177,20 @@ fn newton_takes_over_where_passes_cannot_converge() {
     assert_eq!(run.tally().newton_steps, 20, "{:?}", run.tally());
 }
 
+/// A bead that is pulled to an end of its rail where the potential has no value.
+#[derive(Clone, Copy, MechanicalSystem)]
+#[evi(coordinates(x), kinetic = 0.5 * m * der(x).powi(2), potential = k * x.ln())]
+struct Well {
+    m: f64,
+    k: f64,
+}
+
 #[test]
 fn a_step_without_solution_leaves_the_state() {
-    let Start { q, v } = MODERATE;
-    let mut run = Simulation::new(ANGLES, Gauss::<8>::new(1e4)).start(q, v).expect("a start");
+    let mut run =
+        Simulation::new(Well { m: 1.0, k: 3.0 }, Gauss::<4>::new(1.0)).start([0.5], [-2.0]).expect("a start");
     let before = run.state().clone();
-    let failure = run.advance().map(drop).expect_err("no step of three hours");
+    let failure = run.advance().map(drop).expect_err("no step into the end of the rail");
     println!("{failure}");
     assert!(matches!(failure, StepError::NoSolution { .. } | StepError::Singular { .. }), "{failure}");
     assert_eq!(*run.state(), before);

@@ -6,7 +6,7 @@ use evi_core::integrator::{Fallbacks, Statistics};
 use evi_core::prelude::*;
 use evi_examples::{
     AndrewsSqueezer, CarAxis, DoublePendulum, DrivenPendulum, FermiPastaUlam, GRAVITY, HarmonicOscillator,
-    KapitzaPendulum, Pendulum, SphericalPendulum, Start, StiffSpringPendulum,
+    KapitzaPendulum, Pendulum, Scene, SphericalPendulum, Start, StiffSpringPendulum, Visitor, visit_all,
 };
 use evi_tests::largest_difference;
 
@@ -20,24 +20,42 @@ where
     S: MechanicalSystem<PerCoordinate<f64> = [f64; N]> + Copy,
     F: Scheme<S> + Scheme<Dense<S>> + Copy,
 {
-    let mut specialised = Simulation::new(system, scheme).start(start.q, start.v).expect("consistent");
-    let mut dense = Simulation::new(Dense(system), scheme).start(start.q, start.v).expect("consistent");
-    let zero = [0.0; N];
+    let (largest, _) = compare_paths(system, scheme, (start.q, start.v));
+    println!("{}: {largest:.1} ε", core::panic::Location::caller());
+    assert!(largest <= bound, "{largest} ε");
+}
+
+/// The largest difference of both paths over 100 steps, in positions and velocities each relative to the largest on the way, in ε; and how
+/// often the specialised one fell back.
+fn compare_paths<S, F>(
+    system: S,
+    scheme: F,
+    (q, v): (S::PerCoordinate<f64>, S::PerCoordinate<f64>),
+) -> (f64, Fallbacks)
+where
+    S: MechanicalSystem + Clone,
+    F: Scheme<S> + Scheme<Dense<S>> + Copy,
+{
+    let start = q.clone();
+    let mut specialised =
+        Simulation::new(system.clone(), scheme).start(q.clone(), v.clone()).expect("consistent");
+    let mut dense = Simulation::new(Dense(system), scheme).start(q, v).expect("consistent");
+    let zero = vec![0.0; S::N_COORDINATES];
     let (mut differences, mut sizes, mut travelled) = ([0.0; 2], [0.0; 2], 0.0);
     for _ in 0..STEPS {
         let (specialised, dense) =
             (specialised.advance().expect("solvable"), dense.advance().expect("solvable"));
-        let pairs = [(specialised.q(), dense.q()), (specialised.v(), dense.v())];
+        let pairs = [(specialised.q(), dense.q()), (specialised.v(), dense.v())]
+            .map(|(a, b)| (a.as_ref(), b.as_ref()));
         for (k, (specialised, dense)) in pairs.into_iter().enumerate() {
             differences[k] = larger(differences[k], largest_difference(specialised, dense));
             sizes[k] = larger(sizes[k], largest_difference(dense, &zero));
         }
-        travelled = larger(travelled, largest_difference(dense.q(), &start.q));
+        travelled = larger(travelled, largest_difference(dense.q().as_ref(), start.as_ref()));
     }
-    let [positions, velocities] = [0, 1].map(|k| differences[k] / sizes[k] / f64::EPSILON);
-    println!("{}: positions {positions:.1} ε, velocities {velocities:.1} ε", core::panic::Location::caller());
     assert!(travelled > 0.05 * sizes[0], "the motion is not vacuous: {travelled}");
-    assert!(positions <= bound && velocities <= bound, "{positions} ε, {velocities} ε");
+    let largest = larger(differences[0] / sizes[0], differences[1] / sizes[1]) / f64::EPSILON;
+    (largest, *specialised.tally())
 }
 
 /// The larger of two magnitudes; NaN if one is.
@@ -88,9 +106,9 @@ fn specialised_and_dense_path_agree_on_the_spherical_pendulum() {
 
 #[test]
 fn specialised_and_dense_path_agree_without_constraints() {
-    // Round-off of 100 steps: 9 ε, 1 ε and 64 ε measured.
+    // Round-off of 100 steps: 9 ε, 7 ε and 64 ε measured. The two paths end their iterations differently, each with roundings of its own.
     check(HarmonicOscillator { m: 1.3, k: 20.0 }, Start { q: [1.0], v: [0.5] }, 16.0);
-    check(Pendulum { m: 1.3, l: 0.7, g: GRAVITY }, Start { q: [1.0], v: [0.5] }, 4.0);
+    check(Pendulum { m: 1.3, l: 0.7, g: GRAVITY }, Start { q: [1.0], v: [0.5] }, 16.0);
     let stiff = StiffSpringPendulum::with_stiffness(1e4);
     // A rounding of the position is one of the velocity over h.
     check(stiff, stiff.horizontal(), 128.0);
@@ -108,13 +126,38 @@ fn specialised_and_dense_path_agree_on_stiff_chains_and_mechanisms() {
 
 #[test]
 fn specialised_and_dense_path_agree_where_time_enters() {
-    // Round-off of 100 steps: 54 ε, 11 ε and 3.3 ε measured. The axle's velocities are small beside its positions over h.
+    // Round-off of 100 steps: 81 ε, 11 ε and 3.3 ε measured. The axle's velocities are small beside its positions over h.
     let axle = CarAxis::STANDARD;
-    check_at(H, axle, axle.standard_start(), 64.0);
+    check_at(H, axle, axle.standard_start(), 128.0);
     let driven = DrivenPendulum::STANDARD;
     check_at(H, driven, driven.horizontal(), 16.0);
     let shaken = KapitzaPendulum::STANDARD;
     check_at(H, shaken, shaken.near_inverted(), 8.0);
+}
+
+/// Compares the paths on every standard motion.
+struct StandardMotions;
+
+impl Visitor for StandardMotions {
+    fn visit<S: Scene>(&mut self) {
+        /// Of them the top turns half a radian in one. With 250 it turns 0.8 radians, and its step has solutions beside the one that is
+        /// near the motion, which both paths need not tell apart alike.
+        const STEPS_TO_THE_HORIZON: f64 = 400.0;
+        let system = S::standard();
+        let start = system.standard_motion();
+        let (largest, Fallbacks { fallbacks }) =
+            compare_paths(system, Evi::simpson(S::HORIZON / STEPS_TO_THE_HORIZON), start);
+        println!("{}: {largest:.1} ε, {fallbacks} fallbacks", S::NAME);
+        // Round-off of 100 steps: 37 ε measured on the linkage.
+        assert!(largest <= 64.0, "{}: {largest} ε", S::NAME);
+        // The squeezer's elimination would be too long, so that it has the dense one.
+        assert_eq!(fallbacks > 0, S::NAME == "andrews_squeezer", "{}: {fallbacks} fallbacks", S::NAME);
+    }
+}
+
+#[test]
+fn specialised_and_dense_path_agree_on_the_standard_motion_of_every_scene() {
+    visit_all(&mut StandardMotions);
 }
 
 #[test]

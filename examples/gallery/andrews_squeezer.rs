@@ -5,7 +5,7 @@
 
 use evi_core::prelude::*;
 
-use crate::Start;
+use crate::{Reference, ReferenceOrigin, Scene, Start};
 
 /// Andrews' squeezer; SI units, angles in radians.
 #[derive(MechanicalSystem, Clone, Copy, Debug)]
@@ -187,6 +187,47 @@ impl AndrewsSqueezer {
                 1.230_547_444_549_821_2,
             ],
             v: [0.0; 7],
+        }
+    }
+}
+
+impl Scene for AndrewsSqueezer {
+    const NAME: &'static str = "andrews_squeezer";
+    const SUMMARY: &'static str = "Seven plane bodies in three loops, driven by a torque against a spring.";
+    const ORIGIN: &'static str = "Hairer & Wanner, Solving Ordinary Differential Equations II (1996), sec. VII.7; Test Set for IVP Solvers, andrews";
+    const HORIZON: f64 = 0.03;
+    const CONSERVES_ENERGY: bool = true;
+
+    fn standard() -> Self {
+        Self::STANDARD
+    }
+
+    fn standard_motion(&self) -> ([f64; 7], [f64; 7]) {
+        let Start { q, v } = self.standard_start();
+        (q, v)
+    }
+
+    fn reference() -> Reference<Self> {
+        Reference {
+            origin: ReferenceOrigin::Certified,
+            q: [
+                15.810771195153707,
+                -15.756371058411839,
+                0.0408222401196458,
+                -0.5347301163420796,
+                0.524409965879954,
+                0.5347301163420796,
+                1.048080741041938,
+            ],
+            v: [
+                1139.9203022591062,
+                -1424.3792951775401,
+                11.032911910618594,
+                19.29337410503204,
+                0.5735699148295025,
+                -19.29337410503204,
+                0.3231791492491309,
+            ],
         }
     }
 }

@@ -4,7 +4,7 @@
 
 use evi_core::prelude::*;
 
-use crate::Start;
+use crate::{Reference, ReferenceOrigin, Scene, Start};
 
 /// Car axis, y upwards; units of the test set.
 #[derive(MechanicalSystem, Clone, Copy, Debug)]
@@ -44,5 +44,30 @@ impl CarAxis {
     /// Upright, moving to the left (of the standard axis).
     pub const fn standard_start(&self) -> Start<4> {
         Start { q: [0.0, 0.5, 1.0, 0.5], v: [-0.5, 0.0, -0.5, 0.0] }
+    }
+}
+
+impl Scene for CarAxis {
+    const NAME: &'static str = "car_axis";
+    const SUMMARY: &'static str = "A rigid axle on two springs, whose right end follows a bumpy road.";
+    const ORIGIN: &'static str = "Test Set for IVP Solvers (Mazzia & Magherini), caraxis";
+    const HORIZON: f64 = 3.0;
+    const CONSERVES_ENERGY: bool = false;
+
+    fn standard() -> Self {
+        Self::STANDARD
+    }
+
+    fn standard_motion(&self) -> ([f64; 4], [f64; 4]) {
+        let Start { q, v } = self.standard_start();
+        (q, v)
+    }
+
+    fn reference() -> Reference<Self> {
+        Reference {
+            origin: ReferenceOrigin::Certified,
+            q: [0.049345578427524094, 0.4969894602300081, 1.0417425248854262, 0.3739110272653658],
+            v: [-0.07705836840359208, 0.007446866592068417, 0.017556815753541736, 0.7703410437796011],
+        }
     }
 }

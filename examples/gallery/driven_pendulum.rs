@@ -6,7 +6,7 @@
 
 use evi_core::prelude::*;
 
-use crate::{GRAVITY, Start};
+use crate::{GRAVITY, Reference, ReferenceOrigin, Scene, Start};
 
 /// Driven and damped pendulum in Cartesian coordinates, pivot at the origin, y upwards; SI units.
 #[derive(MechanicalSystem, Clone, Copy, Debug)]
@@ -44,5 +44,30 @@ impl DrivenPendulum {
     /// At rest, the rod horizontal.
     pub const fn horizontal(&self) -> Start<2> {
         Start { q: [self.l, 0.0], v: [0.0; 2] }
+    }
+}
+
+impl Scene for DrivenPendulum {
+    const NAME: &'static str = "driven_pendulum";
+    const SUMMARY: &'static str = "A pendulum with viscous drag, pushed sideways by a periodic force.";
+    const ORIGIN: &'static str = "Baker & Gollub, Chaotic Dynamics (1990), whose drive is a torque";
+    const HORIZON: f64 = 1.0;
+    const CONSERVES_ENERGY: bool = false;
+
+    fn standard() -> Self {
+        Self::STANDARD
+    }
+
+    fn standard_motion(&self) -> ([f64; 2], [f64; 2]) {
+        let Start { q, v } = self.horizontal();
+        (q, v)
+    }
+
+    fn reference() -> Reference<Self> {
+        Reference {
+            origin: ReferenceOrigin::Certified,
+            q: [-0.9616585838860878, -0.2742494631502571],
+            v: [-0.4570493297651815, 1.6026482100614385],
+        }
     }
 }

@@ -8,7 +8,7 @@
 
 use evi_core::prelude::*;
 
-use crate::Start;
+use crate::{Reference, ReferenceOrigin, Scene, Start};
 
 /// Three stiff springs; unit masses, time in units of a slow oscillation.
 #[derive(MechanicalSystem, Clone, Copy, Debug)]
@@ -44,5 +44,49 @@ impl FermiPastaUlam {
     /// The energy of each stiff spring.
     pub fn oscillatory_energies(&self, q: &[f64; 6], v: &[f64; 6]) -> [f64; 3] {
         core::array::from_fn(|i| 0.5 * (v[3 + i].powi(2) + (self.omega * q[3 + i]).powi(2)))
+    }
+}
+
+impl Scene for FermiPastaUlam {
+    const NAME: &'static str = "fermi_pasta_ulam";
+    const SUMMARY: &'static str =
+        "Six masses between walls on stiff harmonic and soft quartic springs, one stiff spring excited.";
+    const ORIGIN: &'static str = "Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), sec. I.5.1";
+    const HORIZON: f64 = 10.0;
+    const CONSERVES_ENERGY: bool = true;
+
+    fn standard() -> Self {
+        Self::STANDARD
+    }
+
+    fn standard_motion(&self) -> ([f64; 6], [f64; 6]) {
+        let Start { q, v } = self.one_spring_excited();
+        (q, v)
+    }
+
+    fn reference() -> Reference<Self> {
+        Reference {
+            origin: ReferenceOrigin::Certified,
+            q: [
+                1.042057637102509,
+                0.24363557036319108,
+                -0.10636043796464913,
+                -0.02755793120125174,
+                -0.0005927177946675772,
+                0.0003950540596100755,
+            ],
+            v: [
+                0.8973233890558256,
+                -0.615417550566789,
+                -0.1287070270742707,
+                -0.11632415447804959,
+                0.22468371856386707,
+                0.002549069486236396,
+            ],
+        }
+    }
+
+    fn equilibrium(&self) -> Option<[f64; 6]> {
+        Some([0.0; 6])
     }
 }

@@ -7,7 +7,7 @@
 
 use evi_core::prelude::*;
 
-use crate::{GRAVITY, Start};
+use crate::{GRAVITY, Reference, ReferenceOrigin, Scene, Start};
 
 /// Pendulum on a shaken pivot in Cartesian coordinates, y upwards; SI units.
 #[derive(MechanicalSystem, Clone, Copy, Debug)]
@@ -42,5 +42,31 @@ impl KapitzaPendulum {
     pub fn near_inverted(&self) -> Start<2> {
         let (sine, cosine) = 0.1_f64.sin_cos();
         Start { q: [self.l * sine, self.a + self.l * cosine], v: [0.0; 2] }
+    }
+}
+
+impl Scene for KapitzaPendulum {
+    const NAME: &'static str = "kapitza_pendulum";
+    const SUMMARY: &'static str = "A pendulum that stands upside down on a pivot that is shaken up and down.";
+    const ORIGIN: &'static str =
+        "Kapitza, Sov. Phys. JETP 21 (1951) 588; Landau & Lifshitz, Mechanics (1976), sec. 30";
+    const HORIZON: f64 = 1.0;
+    const CONSERVES_ENERGY: bool = false;
+
+    fn standard() -> Self {
+        Self::STANDARD
+    }
+
+    fn standard_motion(&self) -> ([f64; 2], [f64; 2]) {
+        let Start { q, v } = self.near_inverted();
+        (q, v)
+    }
+
+    fn reference() -> Reference<Self> {
+        Reference {
+            origin: ReferenceOrigin::Certified,
+            q: [-0.006748973597739527, 0.31534922097362666],
+            v: [0.006171865492860287, 2.964233753284131],
+        }
     }
 }

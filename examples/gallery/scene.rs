@@ -1,5 +1,7 @@
 //! What comparisons need to know of a scene beside its equations.
 
+use std::fmt;
+
 use evi_core::generic::GenericSystem;
 use evi_core::prelude::*;
 
@@ -26,6 +28,12 @@ pub trait Scene: MechanicalSystem + GenericSystem + Clone + Send + Sync + 'stati
 
     /// The end of the standard motion.
     fn reference() -> Reference<Self>;
+
+    /// An equilibrium that the motion oscillates about, if there is one: the linearisation there gives the members with frequencies
+    /// theirs.
+    fn equilibrium(&self) -> Option<Self::PerCoordinate<f64>> {
+        None
+    }
 }
 
 /// A conserved momentum: the moment map of a symmetry, by Noether's theorem.
@@ -54,9 +62,19 @@ pub enum ReferenceOrigin {
     Certified,
     /// A solution in closed form.
     ClosedForm,
-    /// Computed with the scene's own kernels in double-double arithmetic, by Gauss collocation of high order with two step sizes that agree
-    /// in all digits of `f64`.
-    DoubleDouble,
+    /// Computed with the scene's own kernels in octuple precision by extrapolation of the index-1 equations, with two step sizes that
+    /// agree beyond the digits of `f64`: `cargo run --release --example reference`.
+    Octuple,
+}
+
+impl fmt::Display for ReferenceOrigin {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Self::Certified => "certified",
+            Self::ClosedForm => "closed form",
+            Self::Octuple => "octuple precision",
+        })
+    }
 }
 
 /// What to do with scenes of any type, one after the other.

@@ -4,7 +4,7 @@
 
 use evi_core::prelude::*;
 
-use crate::{GRAVITY, Start};
+use crate::{GRAVITY, Reference, ReferenceOrigin, Scene, Start};
 
 /// A point mass on a spring fixed at the origin, y upwards; SI units.
 #[derive(MechanicalSystem, Clone, Copy, Debug)]
@@ -34,5 +34,34 @@ impl StiffSpringPendulum {
     /// Unstretched and horizontal with a downward velocity of 0.5.
     pub const fn horizontal(&self) -> Start<2> {
         Start { q: [self.l, 0.0], v: [0.0, -0.5] }
+    }
+}
+
+impl Scene for StiffSpringPendulum {
+    const NAME: &'static str = "stiff_spring_pendulum";
+    const SUMMARY: &'static str = "A point mass on a stiff linear spring that swings in a plane.";
+    const ORIGIN: &'static str = "Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), ch. XIV";
+    const HORIZON: f64 = 1.0;
+    const CONSERVES_ENERGY: bool = true;
+
+    fn standard() -> Self {
+        Self::with_stiffness(1e4)
+    }
+
+    fn standard_motion(&self) -> ([f64; 2], [f64; 2]) {
+        let Start { q, v } = self.horizontal();
+        (q, v)
+    }
+
+    fn reference() -> Reference<Self> {
+        Reference {
+            origin: ReferenceOrigin::Certified,
+            q: [-0.9969486702681352, -0.0811454255935466],
+            v: [-0.10395435853697933, 1.3530201843563137],
+        }
+    }
+
+    fn equilibrium(&self) -> Option<[f64; 2]> {
+        Some([0.0, -self.l - self.m * self.g / self.k])
     }
 }

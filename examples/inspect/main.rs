@@ -6,12 +6,8 @@ use std::error::Error;
 
 use clap::Parser;
 
-use evi_core::prelude::*;
 use evi_core::report::SystemReport;
-use evi_examples::{
-    AndrewsSqueezer, CarAxis, DoublePendulum, DrivenPendulum, FermiPastaUlam, HarmonicOscillator,
-    KapitzaPendulum, Pendulum, SphericalPendulum, StiffSpringPendulum,
-};
+use evi_examples::{Scene, Visitor, visit_all};
 
 /// Equations, structure and generated code of a scene of the gallery.
 #[derive(Parser)]
@@ -34,41 +30,24 @@ struct Options {
 const PATH_OF_NAMES: &str = "::evi_core::__private::";
 
 /// A scene to look into.
-struct Scene {
+struct Entry {
+    name: &'static str,
+    summary: &'static str,
     report: SystemReport,
     source: Option<&'static str>,
 }
 
-const SCENES: [Scene; 10] = [
-    Scene::of::<AndrewsSqueezer>(),
-    Scene::of::<CarAxis>(),
-    Scene::of::<DoublePendulum>(),
-    Scene::of::<DrivenPendulum>(),
-    Scene::of::<FermiPastaUlam>(),
-    Scene::of::<HarmonicOscillator>(),
-    Scene::of::<KapitzaPendulum>(),
-    Scene::of::<Pendulum>(),
-    Scene::of::<SphericalPendulum>(),
-    Scene::of::<StiffSpringPendulum>(),
-];
+/// The scenes of the gallery, in alphabetical order.
+#[derive(Default)]
+struct Entries(Vec<Entry>);
 
-impl Scene {
-    const fn of<S: MechanicalSystem>() -> Self {
-        Self { report: S::REPORT, source: S::SOURCE }
+impl Visitor for Entries {
+    fn visit<S: Scene>(&mut self) {
+        self.0.push(Entry { name: S::NAME, summary: S::SUMMARY, report: S::REPORT, source: S::SOURCE });
     }
+}
 
-    /// The struct's name in snake case.
-    fn name(&self) -> String {
-        let mut name = String::new();
-        for letter in self.report.name.chars() {
-            if letter.is_uppercase() && !name.is_empty() {
-                name.push('_');
-            }
-            name.extend(letter.to_lowercase());
-        }
-        name
-    }
-
+impl Entry {
     /// The generated code, formatted, without the path that every name of evi-core has in it.
     fn code(&self) -> Result<String, Box<dyn Error>> {
         let source = self.source.ok_or("the generated code is kept with the feature `source` of evi-core")?;
@@ -80,15 +59,18 @@ impl Scene {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let options = Options::parse();
+    let mut entries = Entries::default();
+    visit_all(&mut entries);
+    let Entries(entries) = entries;
     if options.list {
-        for scene in &SCENES {
-            println!("{}", scene.name());
+        for Entry { name, summary, .. } in &entries {
+            println!("{name:<24}{summary}");
         }
         return Ok(());
     }
     let wanted = options.scene.unwrap_or_default();
-    let Some(scene) = SCENES.iter().find(|scene| scene.name() == wanted) else {
-        let names: Vec<String> = SCENES.iter().map(Scene::name).collect();
+    let Some(scene) = entries.iter().find(|entry| entry.name == wanted) else {
+        let names: Vec<&str> = entries.iter().map(|entry| entry.name).collect();
         eprintln!("error: the gallery has no scene `{wanted}`\n       scenes: {}", names.join(", "));
         std::process::exit(2);
     };

@@ -65,7 +65,7 @@ mod agreement {
     use super::*;
 
     /// Takes `STEPS` steps, each of them by passes and by Newton's iteration from the same state; their largest difference in units of
-    /// round-off of the largest number there.
+    /// round-off.
     #[track_caller]
     fn check<S, const K: usize, const N: usize>(system: S, start: Start<N>, h: f64)
     where
@@ -87,8 +87,11 @@ mod agreement {
             assert!(matches!(newton.map().iteration(), Iteration::Newton));
             let after = run.advance().expect("a step of passes");
             let exact = newton.advance().expect("a step of Newton");
-            for (ours, theirs) in [(after.q(), exact.q()), (after.v(), exact.v())] {
-                let size = theirs.iter().fold(0.0_f64, |size, x| size.max(x.abs())).max(1.0);
+            let largest = |x: &[f64]| x.iter().fold(1.0_f64, |largest, x| largest.max(x.abs()));
+            let reach = largest(exact.q());
+            // Multipliers are what keeps points on the constraints, to round-off of the points: velocities feel it by the h-th part.
+            let speed = largest(exact.v()).max(0.1 * reach / h);
+            for (ours, theirs, size) in [(after.q(), exact.q(), reach), (after.v(), exact.v(), speed)] {
                 roundings = roundings.max(largest_difference(ours, theirs) / (size * f64::EPSILON));
             }
         }
@@ -99,7 +102,8 @@ mod agreement {
             tally.corrections as f64 / STEPS as f64
         );
         assert_eq!((tally.restarts, tally.newton_steps), (0, 0), "vacuous: not by passes");
-        assert!(roundings <= 64.0, "{roundings:.0} roundings");
+        // Two iterations: 5 measured.
+        assert!(roundings <= 8.0, "{roundings:.0} roundings");
     }
 
     #[test]
@@ -185,9 +189,9 @@ mod kept {
         let [constraint, hidden] =
             largest_residuals(system, Galerkin::<8>::new(0.05), system.horizontal(), 20_000);
         println!("φ {:.1} ε, G v {:.1} ε", constraint / f64::EPSILON, hidden / f64::EPSILON);
-        // Squares of coordinates up to 2, and products with velocities up to 10 on the whip.
-        assert!(constraint <= 8.0 * f64::EPSILON, "φ: {constraint:e}");
-        assert!(hidden <= 64.0 * f64::EPSILON, "G v: {hidden:e}");
+        // Squares of coordinates of size 1, 2.5 ε measured; projections on gradients of size 2, 1.2 ε measured.
+        assert!(constraint <= 4.0 * f64::EPSILON, "φ: {constraint:e}");
+        assert!(hidden <= 2.0 * f64::EPSILON, "G v: {hidden:e}");
     }
 }
 

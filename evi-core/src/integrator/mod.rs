@@ -14,6 +14,7 @@ mod galerkin;
 mod gauss;
 mod matrix_evi;
 mod multipliers;
+mod positions;
 mod run;
 mod simulation;
 #[cfg(feature = "std")]

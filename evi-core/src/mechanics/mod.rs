@@ -14,6 +14,7 @@ mod forces;
 mod galerkin_equations;
 #[cfg(feature = "std")]
 mod gauss_passes;
+mod implicit_step;
 mod impulse_step;
 mod kick_drift_kick;
 #[cfg(feature = "std")]
@@ -27,6 +28,7 @@ mod momentum;
 mod observables;
 mod quadratic_part;
 mod round_off;
+mod separable_action;
 mod state;
 mod step_equations;
 
@@ -39,6 +41,7 @@ pub(crate) use forces::{ForceDerivatives, ForcePoint};
 pub(crate) use galerkin_equations::{GalerkinAction, Points};
 #[cfg(feature = "std")]
 pub(crate) use gauss_passes::{GaussEnd, GaussGuess, GaussPasses};
+pub(crate) use implicit_step::{ImplicitStep, StepSolution, StepStart};
 pub(crate) use impulse_step::ImpulseStep;
 pub(crate) use kick_drift_kick::KickDriftKick;
 #[cfg(feature = "std")]
@@ -55,8 +58,9 @@ pub use quadratic_part::QuadraticPart;
 pub(crate) use quadratic_part::StepModes;
 pub use round_off::LostDigits;
 pub(crate) use round_off::{Dropped, Lost, RoundOff, Rounded, Sum};
+pub(crate) use separable_action::SeparableAction;
 pub use state::State;
-pub(crate) use step_equations::{DiscreteLagrangian, Slot, StepStart};
+pub(crate) use step_equations::{DiscreteLagrangian, Slot};
 
 use crate::array::Array;
 use crate::linear::Kkt;

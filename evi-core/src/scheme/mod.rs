@@ -205,6 +205,12 @@ pub enum SchemeError {
         /// Its weight.
         mirrored_weight: f64,
     },
+    /// The spectral radius of a generalized-α method lies outside of `[0, 1)`.
+    #[error("the spectral radius at infinity must lie in [0, 1), got {value}")]
+    SpectralRadius {
+        /// `ρ∞`.
+        value: f64,
+    },
     /// The scheme asks for a structure that the scene does not have.
     #[error("{scheme} needs {requirement}")]
     UnsupportedStructure {

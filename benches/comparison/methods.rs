@@ -1,0 +1,195 @@
+//! The table of methods.
+
+use evi_core::baseline::{GeneralizedAlpha, ImplicitMidpoint, Rattle, Rk4, Shake};
+use evi_core::comparison::{Failure, Solver};
+use evi_core::generic::GenericEvi;
+use evi_core::prelude::*;
+use evi_examples::Scene;
+
+use super::Refusal;
+use crate::external::{Tolerances, dop853};
+
+/// A method and how it starts on scenes of type `S`.
+pub struct Method<S> {
+    /// What there is to say about it.
+    pub facts: MethodFacts,
+    /// A solver at the start of the scene's standard motion, with the given step size or tolerance.
+    pub start: fn(&S, f64) -> Result<Box<dyn Solver>, Failure>,
+}
+
+/// What there is to say about a method, whatever the scene.
+#[derive(Clone, Copy, Debug)]
+pub struct MethodFacts {
+    /// Name on the command line and in files, in snake case.
+    pub name: &'static str,
+    /// How it comes to its equations.
+    pub path: Path,
+    /// On whose side it stands.
+    pub role: Role,
+    /// Power of the step size to which errors fall.
+    pub order: u32,
+    /// What it is run with.
+    pub resolution: Resolution,
+    /// One sentence.
+    pub summary: &'static str,
+}
+
+/// How a method comes to the equations of a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Path {
+    /// By the kernels that the derive emits.
+    Specialised,
+    /// On sizes known at run time, with derivatives by dual numbers.
+    Generic,
+    /// A solver from elsewhere; its right side are the specialised kernels.
+    External,
+    /// A program from elsewhere, with its own equations; it gives ends of motions, not solvers.
+    Program,
+}
+
+impl Path {
+    /// As in files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Specialised => "specialised",
+            Self::Generic => "generic",
+            Self::External | Self::Program => "external",
+        }
+    }
+}
+
+/// On whose side a method stands in a comparison.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// A method that this project exists for.
+    Member,
+    /// A method to compare with.
+    Baseline,
+}
+
+impl Role {
+    /// Whether it is [`Member`](Self::Member).
+    pub const fn is_member(self) -> bool {
+        matches!(self, Self::Member)
+    }
+}
+
+/// What determines how exact a method is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Resolution {
+    /// The size of its steps, all alike.
+    StepSize,
+    /// A tolerance, by which it chooses its steps.
+    Tolerance,
+}
+
+/// Every method, for scenes of type `S`; one that a scene does not admit says so when it starts.
+pub fn all<S: Scene>() -> Vec<Method<S>> {
+    vec![
+        member("midpoint", 2, "variational, midpoint rule", |s, h| run(s, Evi::midpoint(h))),
+        member("midpoint_4", 4, "5 midpoint steps composed (Suzuki)", |s, h| {
+            run(s, Evi::midpoint(h).composed(Composition::suzuki_4()))
+        }),
+        member("midpoint_6", 6, "9 midpoint steps composed (Kahan, Li)", |s, h| {
+            run(s, Evi::midpoint(h).composed(Composition::kahan_li_6()))
+        }),
+        member("midpoint_8", 8, "17 midpoint steps composed (Kahan, Li)", |s, h| {
+            run(s, Evi::midpoint(h).composed(Composition::kahan_li_8()))
+        }),
+        member("trapezoid", 2, "variational, trapezoidal rule: leapfrog or RATTLE", |s, h| {
+            run(s, Evi::trapezoid(h))
+        }),
+        member("trapezoid_4", 4, "5 trapezoid steps composed (Suzuki)", |s, h| {
+            run(s, Evi::trapezoid(h).composed(Composition::suzuki_4()))
+        }),
+        member("trapezoid_6", 6, "9 trapezoid steps composed (Kahan, Li)", |s, h| {
+            run(s, Evi::trapezoid(h).composed(Composition::kahan_li_6()))
+        }),
+        member("trapezoid_8", 8, "17 trapezoid steps composed (Kahan, Li)", |s, h| {
+            run(s, Evi::trapezoid(h).composed(Composition::kahan_li_8()))
+        }),
+        member("exponential", 2, "impulse method: quadratic part at an equilibrium exact", |s, h| {
+            run(s, Evi::trapezoid(h).linearised_at(equilibrium(s)?))
+        }),
+        member("exponential_8", 8, "17 exponential steps composed (Kahan, Li)", |s, h| {
+            run(s, Evi::trapezoid(h).linearised_at(equilibrium(s)?).composed(Composition::kahan_li_8()))
+        }),
+        member("galerkin_2", 4, "variational, Lobatto IIIA-IIIB with 3 stages", |s, h| {
+            run(s, Galerkin::<2>::new(h))
+        }),
+        member("galerkin_4", 8, "variational, Lobatto IIIA-IIIB with 5 stages", |s, h| {
+            run(s, Galerkin::<4>::new(h))
+        }),
+        member("galerkin_8", 16, "variational, Lobatto IIIA-IIIB with 9 stages", |s, h| {
+            run(s, Galerkin::<8>::new(h))
+        }),
+        baseline("rattle", 2, "leapfrog on the constraints", |s, h| run(s, Rattle::new(h))),
+        baseline("shake", 2, "leapfrog on the constraints, velocities by differences", |s, h| {
+            run(s, Shake::new(h))
+        }),
+        baseline("implicit_midpoint", 2, "implicit midpoint rule", |s, h| run(s, ImplicitMidpoint::new(h))),
+        baseline("generalized_alpha", 2, "generalized-α, index 3", |s, h| run(s, GeneralizedAlpha::new(h))),
+        baseline("rk4", 4, "explicit Runge-Kutta, index-1 equations", |s, h| run(s, Rk4::new(h))),
+        baseline(
+            "midpoint_generic",
+            2,
+            "midpoint on matrices of run-time size, dual numbers",
+            |system: &S, h| {
+                let (q, v) = system.standard_motion();
+                let run = GenericEvi::midpoint(h).start(system.clone(), q.as_ref(), v.as_ref())?;
+                Ok(Box::new(run))
+            },
+        )
+        .on(Path::Generic),
+        baseline(
+            "dop853",
+            8,
+            "explicit Runge-Kutta, index-1 equations, crate ode_solvers",
+            |s: &S, tolerance| {
+                let (q, v) = s.standard_motion();
+                Ok(dop853(s, &q, &v, Tolerances::both(tolerance))?)
+            },
+        )
+        .on(Path::External),
+        baseline("heyoka", 20, "Taylor series, index-1 equations, compiled by heyoka", |_, _| {
+            Err(Refusal::NotRun { reason: "a program of its own, asked for with --peers".into() }.into())
+        })
+        .on(Path::Program),
+    ]
+}
+
+fn equilibrium<S: Scene>(system: &S) -> Result<S::PerCoordinate<f64>, Refusal> {
+    system.equilibrium().ok_or(Refusal::NoEquilibrium)
+}
+
+type Start<S> = fn(&S, f64) -> Result<Box<dyn Solver>, Failure>;
+
+impl<S> Method<S> {
+    /// With a step size, on the specialised path.
+    const fn new(role: Role, name: &'static str, order: u32, summary: &'static str, start: Start<S>) -> Self {
+        let (path, resolution) = (Path::Specialised, Resolution::StepSize);
+        Self { facts: MethodFacts { name, path, role, order, resolution, summary }, start }
+    }
+
+    /// On another path; solvers from elsewhere choose their steps by a tolerance.
+    const fn on(mut self, path: Path) -> Self {
+        self.facts.path = path;
+        if matches!(path, Path::External | Path::Program) {
+            self.facts.resolution = Resolution::Tolerance;
+        }
+        self
+    }
+}
+
+const fn member<S>(name: &'static str, order: u32, summary: &'static str, start: Start<S>) -> Method<S> {
+    Method::new(Role::Member, name, order, summary, start)
+}
+
+const fn baseline<S>(name: &'static str, order: u32, summary: &'static str, start: Start<S>) -> Method<S> {
+    Method::new(Role::Baseline, name, order, summary, start)
+}
+
+fn run<S: Scene, F: Scheme<S, Step: 'static>>(system: &S, scheme: F) -> Result<Box<dyn Solver>, Failure> {
+    let (q, v) = system.standard_motion();
+    Ok(Box::new(Simulation::new(system.clone(), scheme).start(q, v)?))
+}
