@@ -177,9 +177,9 @@ fn newton_takes_over_where_passes_cannot_converge() {
     assert_eq!(run.tally().newton_steps, 20, "{:?}", run.tally());
 }
 
-/// A bead that is pulled to an end of its rail where the potential has no value.
+/// A bead that is pulled to an end of its rail beyond which the potential has no value.
 #[derive(Clone, Copy, MechanicalSystem)]
-#[evi(coordinates(x), kinetic = 0.5 * m * der(x).powi(2), potential = k * x.ln())]
+#[evi(coordinates(x), kinetic = 0.5 * m * der(x).powi(2), potential = k * x.sqrt())]
 struct Well {
     m: f64,
     k: f64,
@@ -188,9 +188,9 @@ struct Well {
 #[test]
 fn a_step_without_solution_leaves_the_state() {
     let mut run =
-        Simulation::new(Well { m: 1.0, k: 3.0 }, Gauss::<4>::new(1.0)).start([0.5], [-2.0]).expect("a start");
+        Simulation::new(Well { m: 1.0, k: 3.0 }, Gauss::<4>::new(1.0)).start([0.5], [-8.0]).expect("a start");
     let before = run.state().clone();
-    let failure = run.advance().map(drop).expect_err("no step into the end of the rail");
+    let failure = run.advance().map(drop).expect_err("no step beyond the end of the rail");
     println!("{failure}");
     assert!(matches!(failure, StepError::NoSolution { .. } | StepError::Singular { .. }), "{failure}");
     assert_eq!(*run.state(), before);
