@@ -12,9 +12,13 @@ mod folded_step;
 mod forces;
 #[cfg(feature = "std")]
 mod galerkin_equations;
+#[cfg(feature = "std")]
+mod gauss_passes;
 mod implicit_step;
 mod impulse_step;
 mod kick_drift_kick;
+#[cfg(feature = "std")]
+mod lane_step;
 mod leapfrog_step;
 mod legendre;
 mod linearisation;
@@ -35,9 +39,13 @@ pub(crate) use folded_step::FoldedStep;
 pub(crate) use forces::{ForceDerivatives, ForcePoint};
 #[cfg(feature = "std")]
 pub(crate) use galerkin_equations::{GalerkinAction, Points};
+#[cfg(feature = "std")]
+pub(crate) use gauss_passes::{GaussEnd, GaussGuess, GaussPasses};
 pub(crate) use implicit_step::{ImplicitStep, StepSolution, StepStart};
 pub(crate) use impulse_step::ImpulseStep;
 pub(crate) use kick_drift_kick::KickDriftKick;
+#[cfg(feature = "std")]
+pub(crate) use lane_step::{FirstGuess, LaneEnd, LaneStep, Passes};
 pub(crate) use leapfrog_step::LeapfrogStep;
 pub(crate) use legendre::ConstantLegendre;
 pub use linearisation::Linearisation;
