@@ -16,7 +16,7 @@ use newton::GaussNewton;
 /// quadrature.
 ///
 /// Of order `2K`, symplectic, time-symmetric (Hairer, Lubich, Wanner, Geometric Numerical Integration, 2nd ed., sec. II.1.3 and
-/// VI.4.2). For scenes without constraints, which the compiler checks; there it takes one node less than a [`Galerkin`](super::Galerkin) of the same
+/// VI.4.2). For scenes without constraints, others are refused; there it takes one node less than a [`Galerkin`](super::Galerkin) of the same
 /// order, and its passes over all nodes, a node per vector lane, take every mass matrix. Passes that do not converge are rescued by Newton's iteration
 /// on all nodes.
 ///
@@ -64,7 +64,10 @@ impl<S: MechanicalSystem, const K: usize> Scheme<S> for Gauss<K> {
     type Step = GaussStep<S, K>;
 
     fn prepare(&self, mechanics: Mechanics<S>) -> Result<Self::Step, SchemeError> {
-        const { assert!(S::N_CONSTRAINTS == 0, "a Gauss integrator takes no constraints: `Galerkin` does") };
+        if S::N_CONSTRAINTS > 0 {
+            let requirement = "a scene without constraints; `Galerkin` takes them";
+            return Err(SchemeError::UnsupportedStructure { scheme: "a Gauss integrator", requirement });
+        }
         let h = checked_step_size(self.h)?;
         Ok(GaussStep {
             passes: (!self.by_newton).then(|| GaussPasses::new(&mechanics, h)),
