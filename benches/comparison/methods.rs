@@ -114,9 +114,6 @@ pub fn all<S: Scene>() -> Vec<Method<S>> {
         member("exponential_8", 8, "17 exponential steps composed (Kahan, Li)", |s, h| {
             run(s, Evi::trapezoid(h).linearised_at(equilibrium(s)?).composed(Composition::kahan_li_8()))
         }),
-        member("galerkin_2", 4, "variational, Lobatto IIIA-IIIB with 3 stages", |s, h| {
-            run(s, Galerkin::<2>::new(h))
-        }),
         member("galerkin_4", 8, "variational, Lobatto IIIA-IIIB with 5 stages", |s, h| {
             run(s, Galerkin::<4>::new(h))
         }),

@@ -142,6 +142,7 @@ fn gather(plan: &Plan<'_>, quick: bool, journal: &Journal) -> Results {
         verdicts: scenes.iter().map(|scene| verdicts::on(scene.name, &rows, &methods)).collect(),
         machine: journal.machine().clone(),
         quick,
+        errors: verdicts::ERRORS,
         orders,
         speedups: finished().filter_map(|piece| piece.speedup.clone()).collect(),
         long_runs: finished().filter_map(|piece| piece.long_run.clone()).collect(),

@@ -11,6 +11,8 @@ use evi_benches::comparison::scenes::SceneFacts;
 pub(crate) struct Results {
     pub(crate) machine: crate::machine::Machine,
     pub(crate) quick: bool,
+    /// Accuracies of the verdicts.
+    pub(crate) errors: [f64; crate::verdicts::ERRORS.len()],
     pub(crate) scenes: Vec<Scene>,
     pub(crate) methods: Vec<Method>,
     pub(crate) rows: Vec<Row>,

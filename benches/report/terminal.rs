@@ -8,8 +8,8 @@ pub(crate) fn print(results: &Results) {
     println!("{}", results.machine.line());
     for scene in &results.scenes {
         println!("\n{}\n{:<20}", "─".repeat(72), scene.name);
-        print!("{:<20} {:>8}", "time to error", "order");
-        ERRORS.iter().for_each(|error| print!(" {error:>9.0e}"));
+        print!("{:<18} {:>6}", "time to error", "order");
+        ERRORS.iter().for_each(|error| print!(" {error:>8.0e}"));
         println!();
         let verdict = results.verdicts.iter().find(|verdict| verdict.scene == scene.name);
         for method in &results.methods {
@@ -18,7 +18,7 @@ pub(crate) fn print(results: &Results) {
             let order =
                 results.orders.iter().find(|fit| fit.scene == scene.name && fit.method == method.name);
             print!(
-                "{:<20} {:>8}",
+                "{:<18} {:>6}",
                 method.name,
                 order.map_or(String::new(), |fit| format!("{:.2}", fit.order))
             );
@@ -27,7 +27,7 @@ pub(crate) fn print(results: &Results) {
             let smallest = rows().filter_map(|row| row.position_error).min_by(f64::total_cmp);
             match (times, smallest, rows().next()) {
                 (Some((_, times)), ..) => {
-                    times.iter().for_each(|time| print!(" {:>9}", time.map_or("–".into(), duration)));
+                    times.iter().for_each(|time| print!(" {:>8}", time.map_or("–".into(), duration)));
                     println!();
                 }
                 (None, Some(smallest), _) => println!("  the smallest error is {smallest:.0e}"),

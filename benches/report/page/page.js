@@ -190,7 +190,7 @@ function curve(rows, key, fit) {
   };
 }
 
-const LEVELS = ["1e-3", "1e-6", "1e-9", "1e-12"];
+const LEVELS = results.errors.map((error) => error.toExponential(0));
 const timesHead = () => ["method", "nominal order", "fitted order", ...LEVELS.map((level) => `µs to ${level}`), "note"];
 function timesRows(rows, verdict, orders) {
   return results.methods.map((method) => {
