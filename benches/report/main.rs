@@ -18,6 +18,7 @@ mod verdicts;
 use std::error::Error;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::thread;
 use std::time::Duration;
 
 use clap::Parser;
@@ -55,8 +56,17 @@ struct Options {
     counted: Option<Vec<String>>,
 }
 
+/// For the largest scenes: a run lives on the stack until it is boxed, and a composition holds a map for each of its stages.
+const STACK_BYTES: usize = 1 << 28;
+
 fn main() -> ExitCode {
-    match run(Options::parse()) {
+    let options = Options::parse();
+    let thread = thread::Builder::new().stack_size(STACK_BYTES).spawn(|| measured(options));
+    thread.expect("a thread").join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+}
+
+fn measured(options: Options) -> ExitCode {
+    match run(options) {
         Ok(Ending::Complete) => ExitCode::SUCCESS,
         Ok(Ending::Interrupted) => ExitCode::from(130),
         Err(error) => {
