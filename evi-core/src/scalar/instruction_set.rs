@@ -19,6 +19,9 @@ enum Level {
     /// AVX2 with fused products, found at run time: x86-64-v3.
     #[cfg(all(feature = "dispatch", target_arch = "x86_64"))]
     Avx2(pulp::x86::V3),
+    /// AVX-512, found at run time: x86-64-v4.
+    #[cfg(all(feature = "dispatch", target_arch = "x86_64"))]
+    Avx512(pulp::x86::V4),
 }
 
 /// Work on lanes.
@@ -29,6 +32,20 @@ pub(crate) trait LaneOperation {
     fn run<const FUSED: bool>(self) -> Self::Output;
 }
 
+/// An operation on a machine with fused products.
+#[cfg(all(feature = "dispatch", target_arch = "x86_64"))]
+struct Fused<O>(O);
+
+#[cfg(all(feature = "dispatch", target_arch = "x86_64"))]
+impl<O: LaneOperation> pulp::NullaryFnOnce for Fused<O> {
+    type Output = O::Output;
+
+    #[inline(always)]
+    fn call(self) -> O::Output {
+        self.0.run::<true>()
+    }
+}
+
 impl InstructionSet {
     /// Whether code for the whole program may contain fused products.
     const COMPILED_FUSED: bool = cfg!(any(target_feature = "fma", target_arch = "aarch64"));
@@ -36,8 +53,13 @@ impl InstructionSet {
     /// The best one that lanes have code for.
     pub fn detect() -> Self {
         #[cfg(all(feature = "dispatch", target_arch = "x86_64"))]
-        if let (false, Some(avx2)) = (Self::COMPILED_FUSED, pulp::x86::V3::try_new()) {
-            return Self(Level::Avx2(avx2));
+        if !Self::COMPILED_FUSED {
+            if let Some(avx512) = pulp::x86::V4::try_new() {
+                return Self(Level::Avx512(avx512));
+            }
+            if let Some(avx2) = pulp::x86::V3::try_new() {
+                return Self(Level::Avx2(avx2));
+            }
         }
         Self(Level::Compiled)
     }
@@ -45,6 +67,8 @@ impl InstructionSet {
     /// Its name, for reports.
     pub const fn name(&self) -> &'static str {
         match self.0 {
+            #[cfg(all(feature = "dispatch", target_arch = "x86_64"))]
+            Level::Avx512(_) => "AVX-512, found at run time",
             #[cfg(all(feature = "dispatch", target_arch = "x86_64"))]
             Level::Avx2(_) => "AVX2 + FMA, found at run time",
             Level::Compiled if cfg!(target_feature = "avx512f") => "AVX-512",
@@ -59,6 +83,8 @@ impl InstructionSet {
     pub const fn vector_width(&self) -> usize {
         match self.0 {
             #[cfg(all(feature = "dispatch", target_arch = "x86_64"))]
+            Level::Avx512(_) => 8,
+            #[cfg(all(feature = "dispatch", target_arch = "x86_64"))]
             Level::Avx2(_) => 4,
             Level::Compiled if cfg!(target_feature = "avx512f") => 8,
             Level::Compiled if cfg!(target_feature = "avx") => 4,
@@ -72,17 +98,9 @@ impl InstructionSet {
     pub(crate) fn run<O: LaneOperation>(self, operation: O) -> O::Output {
         match self.0 {
             #[cfg(all(feature = "dispatch", target_arch = "x86_64"))]
-            Level::Avx2(avx2) => {
-                struct Fused<O>(O);
-                impl<O: LaneOperation> pulp::NullaryFnOnce for Fused<O> {
-                    type Output = O::Output;
-                    #[inline(always)]
-                    fn call(self) -> O::Output {
-                        self.0.run::<true>()
-                    }
-                }
-                avx2.vectorize(Fused(operation))
-            }
+            Level::Avx512(avx512) => avx512.vectorize(Fused(operation)),
+            #[cfg(all(feature = "dispatch", target_arch = "x86_64"))]
+            Level::Avx2(avx2) => avx2.vectorize(Fused(operation)),
             Level::Compiled if Self::COMPILED_FUSED => operation.run::<true>(),
             Level::Compiled => operation.run::<false>(),
         }
