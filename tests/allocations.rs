@@ -198,6 +198,14 @@ fn no_step_of_a_galerkin_integrator_allocates() {
     check(SPHERICAL, Galerkin::<2>::new(0.01).frequency(OMEGA), SPHERICAL.one_radian());
     check(SPRING, Galerkin::<4>::new(0.01), SPRING.horizontal());
     check(DOUBLE, Galerkin::<1>::new(0.01).composed(Composition::suzuki_4()), mild());
+    check(DOUBLE, Galerkin::<3>::new(0.01).by_newton(), mild());
+}
+
+#[test]
+fn no_step_of_a_gauss_integrator_allocates() {
+    check(SPRING, Gauss::<8>::new(0.01), SPRING.horizontal());
+    check(PENDULUM, Gauss::<3>::new(0.01).compensated(), SWING);
+    check(PENDULUM, Gauss::<3>::new(0.01).by_newton(), SWING);
 }
 
 #[test]
