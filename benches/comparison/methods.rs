@@ -14,8 +14,11 @@ pub struct Method<S> {
     /// What there is to say about it.
     pub facts: MethodFacts,
     /// A solver at the start of the scene's standard motion, with the given step size or tolerance.
-    pub start: fn(&S, f64) -> Result<Box<dyn Solver>, Failure>,
+    pub start: Start<S>,
 }
+
+/// Starts a solver on a scene with a step size or a tolerance.
+pub type Start<S> = fn(&S, f64) -> Result<Box<dyn Solver>, Failure>;
 
 /// What there is to say about a method, whatever the scene.
 #[derive(Clone, Copy, Debug)]
@@ -166,8 +169,6 @@ pub fn all<S: Scene>() -> Vec<Method<S>> {
 fn equilibrium<S: Scene>(system: &S) -> Result<S::PerCoordinate<f64>, Refusal> {
     system.equilibrium().ok_or(Refusal::NoEquilibrium)
 }
-
-type Start<S> = fn(&S, f64) -> Result<Box<dyn Solver>, Failure>;
 
 /// A row of the table on one path; what comes from elsewhere chooses its steps by a tolerance.
 macro_rules! rows {

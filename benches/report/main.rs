@@ -110,9 +110,8 @@ fn run(options: Options) -> Result<Ending, Box<dyn Error>> {
 fn chosen_scenes(names: &[String]) -> Result<Vec<Box<dyn AnyScene>>, String> {
     let all = scenes::all();
     check_names("scene", names, &all.iter().map(|scene| scene.facts().name).collect::<Vec<_>>())?;
-    let is_chosen =
-        |scene: &Box<dyn AnyScene>| names.is_empty() || names.iter().any(|n| n == scene.facts().name);
-    Ok(all.into_iter().filter(is_chosen).collect())
+    let is_chosen = |name: &str| names.is_empty() || names.iter().any(|chosen| chosen == name);
+    Ok(all.into_iter().filter(|scene| is_chosen(scene.facts().name)).collect())
 }
 
 /// Numbers of the methods, the same for every scene.

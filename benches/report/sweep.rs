@@ -51,7 +51,7 @@ impl Thoroughness {
                 peers,
                 effort: Effort { samples: 5, sample_seconds: 5e-4, seconds: 1e-2 },
                 refinement: 2.0_f64.powf(0.25),
-                longest_sweep: Duration::from_secs(4),
+                longest_sweep: Duration::from_secs(6),
                 longest_run: Duration::from_millis(500),
             }
         }
@@ -71,7 +71,9 @@ const WINDOWS: usize = 240;
 /// The fewest steps of a sweep.
 const FEWEST_STEPS: f64 = 8.0;
 /// A method that does not start with so many step sizes and has not before does not start on this scene.
-const REFUSALS: usize = 8;
+const REFUSALS: usize = 6;
+/// Up to an error of this fraction of the configuration, steps are halved from run to run.
+const COARSE: f64 = 0.1;
 /// The loosest tolerance of a sweep.
 const LOOSEST: f64 = 1e-2;
 /// The tightest tolerance of a sweep.
@@ -188,8 +190,8 @@ impl Work<'_> {
     /// Runs of one method from coarse to fine, until errors have reached round-off or the time is over.
     fn sweep(&self, method: usize) -> Vec<Row> {
         let Thoroughness { effort, refinement, longest_sweep, .. } = self.thoroughness;
-        // Some methods end early: the average piece may take more than its part.
-        let allowed = (2 * self.left).min(longest_sweep);
+        // Most methods end early: one that does not may take more than its part.
+        let allowed = (4 * self.left).min(longest_sweep);
         let (scene, facts) = (self.scene.facts(), self.scene.methods()[method]);
         if facts.path == Path::Program && self.thoroughness.peers {
             return self.sweep_of_program(&scene, &facts);
@@ -198,7 +200,14 @@ impl Work<'_> {
         let mut rows = Vec::new();
         let mut progress = Progress::new(scene.size);
         let mut predicted = Duration::ZERO;
+        // How many of the next resolutions lie too near to a run that failed or was coarse.
+        let mut skipped = 0;
+        let to_half_the_step = (2.0_f64.ln() / refinement.ln()).round() as u32;
         for resolution in resolutions(&facts, scene.horizon, refinement) {
+            if skipped > 0 {
+                skipped -= 1;
+                continue;
+            }
             if self.interrupted.load(Ordering::Relaxed) {
                 break;
             }
@@ -210,6 +219,9 @@ impl Work<'_> {
             match measure(self.scene, method, resolution, effort) {
                 Ok(outcome) => {
                     rows.push(row.with(outcome));
+                    // Written so that a NaN is coarse.
+                    let is_fine = outcome.position_error <= COARSE * scene.size;
+                    skipped = if is_fine { 0 } else { to_half_the_step - 1 };
                     if progress.has_ended(outcome.position_error) {
                         break;
                     }
@@ -221,7 +233,10 @@ impl Work<'_> {
                 Err(failure) if failure.is::<StartError>() && rows.len() >= REFUSALS => {
                     return vec![Row::without_run(&scene, &facts, format!("refused: {failure}"))];
                 }
-                Err(failure) => rows.push(Row { status: format!("failed: {failure}"), ..row }),
+                Err(failure) => {
+                    rows.push(Row { status: format!("failed: {failure}"), ..row });
+                    skipped = to_half_the_step - 1;
+                }
             }
             predicted = clock.elapsed().mul_f64(refinement);
         }
