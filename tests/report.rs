@@ -97,6 +97,12 @@ fn constraints_are_classified_one_by_one() {
     assert_eq!(affine, [true, true, false, true, true]);
     let on_t: Vec<bool> = each.iter().map(|constraint| constraint.on_t).collect();
     assert_eq!(on_t, [false, true, false, false, false]);
+    let quadratic: Vec<bool> = each.iter().map(|constraint| constraint.is_quadratic).collect();
+    assert_eq!(quadratic, [true; 5]);
+    assert!(DoublePendulum::STRUCTURE.has_quadratic_constraints());
+    // `turning` depends on time, a crank's constraints are trigonometric.
+    assert!(!Chain::STRUCTURE.has_quadratic_constraints());
+    assert!(!SliderCrank::STRUCTURE.has_quadratic_constraints());
     let repeats: Vec<Option<usize>> = each.iter().map(|constraint| constraint.repeats).collect();
     assert_eq!(repeats, [None, None, None, Some(0), None]);
     let graph = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (1, 4), (2, 3), (2, 4)];

@@ -9,17 +9,22 @@ use core::borrow::Borrow;
 use super::{IterationFailure, StepError};
 use crate::array::Array;
 use crate::linear::{Factorization, largest_magnitude};
-use crate::mechanics::{Coupling, Directions, KickDriftKick, Lost, Mechanics, RoundOff, State, Sum};
+use crate::mechanics::{Coupling, Directions, KickDriftKick, Lost, Mechanics, NOTHING, RoundOff, State, Sum};
 use crate::newton::{self, Progress, Tally};
 use crate::system::MechanicalSystem;
 
 /// Corrections with one matrix that do, as a rule.
 const CHORDS: usize = 2;
 
-/// A step without its constraint forces, with the impulses that it has needed so far. They affect the number of corrections and the last bits of
-/// a state, nothing else: a prediction that misses is not followed.
+/// A step without its constraint forces, with the impulses that it has needed so far.
 pub(crate) struct MultiplierStep<S: MechanicalSystem, F> {
     free: F,
+    history: History<S>,
+}
+
+/// The impulses so far. They affect the number of corrections and the last bits of a state, nothing else: a prediction that misses is not
+/// followed.
+struct History<S: MechanicalSystem> {
     /// The first guess of the next step: what a cubic through the last four impulses predicts.
     predicted: S::PerConstraint<f64>,
     /// Impulses of the last three steps, newest first.
@@ -40,7 +45,7 @@ struct Span<'a, S: MechanicalSystem, F, R> {
     t_start: f64,
     t_end: f64,
     /// `q₀`.
-    start: &'a S::PerCoordinate<f64>,
+    start: S::PerCoordinate<f64>,
     round_off: R,
     /// `D p½`, without constraint forces.
     free_difference: S::PerCoordinate<f64>,
@@ -48,6 +53,31 @@ struct Span<'a, S: MechanicalSystem, F, R> {
     jacobian: S::PerJacobianEntry<f64>,
     /// `D G₀ᵀ`.
     directions: Directions<S>,
+}
+
+/// Where the corrections with one matrix have led.
+struct Attempt<S: MechanicalSystem, Q> {
+    q: Q,
+    /// The sum of the corrections.
+    correction: Correction<S>,
+    /// What the corrections were made for, in this order.
+    residuals: [S::PerConstraint<f64>; 2],
+    /// Varying entries of `G`, there or as good as there.
+    jacobian: S::PerJacobianEntry<f64>,
+    corrections: usize,
+    /// Whether the prediction was near enough to be followed.
+    is_trusted: bool,
+    /// Whether no further correction is needed.
+    is_solved: bool,
+}
+
+/// A correction of the impulse, and what it does.
+struct Correction<S: MechanicalSystem> {
+    impulse: S::PerConstraint<f64>,
+    /// `G₀ᵀ` times that: what the momentum loses.
+    pull: S::PerCoordinate<f64>,
+    /// `D` times that: what the end loses.
+    moved: S::PerCoordinate<f64>,
 }
 
 /// The end of a step on the constraints.
@@ -63,10 +93,14 @@ struct Landing<S: MechanicalSystem, Q> {
 impl<S: MechanicalSystem, F: KickDriftKick<S>> MultiplierStep<S, F> {
     pub(crate) fn new(free: F) -> Self {
         let none = S::PerConstraint::<f64>::from_fn(|_| 0.0);
-        Self { free, predicted: none.clone(), previous: [none.clone(), none.clone(), none] }
+        let previous = [none.clone(), none.clone(), none.clone()];
+        Self { free, history: History { predicted: none, previous } }
     }
 
     /// Overwrites `state` with the state one step of size `h` later, and returns what its positions and momenta have lost.
+    ///
+    /// What follows where two corrections do not suffice takes copies, and ends the step by itself: on the way that most steps
+    /// take no value lies in memory for its sake.
     #[inline(always)]
     pub(crate) fn advance<R: RoundOff<S>>(
         &mut self,
@@ -76,11 +110,11 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>> MultiplierStep<S, F> {
         round_off: R,
         tally: &mut impl Tally,
     ) -> Result<[Lost<S, R>; 2], StepError> {
-        let free = &self.free;
+        let Self { free, history } = self;
         let t = state.t + h;
         let momentum = round_off.momentum(&state.p);
         let kicked = free.kicked_at_start(mechanics, state.t, &state.q, momentum.terms());
-        let mut momentum = momentum.with(kicked);
+        let momentum = momentum.with(kicked);
         let half_way = momentum.value().borrow().clone();
         let free_difference = free.drift().times(|i| half_way[i]);
         if S::N_CONSTRAINTS == 0 {
@@ -92,39 +126,38 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>> MultiplierStep<S, F> {
         }
         let (_, jacobian) = S::constraint_derivatives(&mechanics.constants, state.t, &state.q);
         let directions = mechanics.constraint_directions(&jacobian, free.drift());
-        let (t_start, start) = (state.t, &state.q);
         let span = Span {
             mechanics,
-            free,
-            t_start,
+            free: &*free,
+            t_start: state.t,
             t_end: t,
-            start,
+            start: state.q.clone(),
             round_off,
             free_difference,
             jacobian,
             directions,
         };
-        let Landing { q: position, impulse, gram, corrections } =
-            span.solve(self.predicted.clone(), tally)?;
-        tally.count_corrections(corrections);
-        let (q, lost_q) = position.split();
-        mechanics.subtract_constraint_force(
-            span.jacobian.as_ref(),
-            impulse.as_ref(),
-            momentum.terms_mut().as_mut(),
-        );
-        let kicked = free.kicked_at_end(mechanics, t, &q, momentum.terms());
-        let momentum = momentum.with(kicked);
-
-        let (_, jacobian) = S::constraint_derivatives(&mechanics.constants, t, &q);
-        let expected = self.expected_end_impulse(&impulse);
-        let (v, momentum) = free.legendre().project(mechanics, &gram, &jacobian, &expected, momentum);
-        let (p, lost_p) = momentum.split();
-        state.replace(t, q, v, p)?;
-        self.remember(impulse);
-        Ok([lost_q, lost_p])
+        let Some(attempt) = span.attempt(&history.predicted, tally) else {
+            return span.land_slowly(None, momentum, history, state, tally);
+        };
+        if attempt.is_trusted
+            && attempt.is_solved
+            && let Ok(gram) = free.legendre().factor_gram(mechanics, &attempt.jacobian, tally)
+        {
+            let Attempt { q, correction, corrections, .. } = attempt;
+            let mut momentum = span.pulled(momentum, &history.predicted);
+            move_by::<S, _>(&mut momentum, &correction.pull);
+            // As good a guess as that from the impulse itself, and known at the start of the step.
+            let expected = history.expected_end_impulse(&history.predicted);
+            let impulse = Array::from_fn(|c| history.predicted[c] + correction.impulse[c]);
+            let landing = Landing { q, impulse, gram, corrections };
+            return span.land(landing, &expected, momentum, history, state, tally);
+        }
+        span.land_slowly(Some(attempt), momentum, history, state, tally)
     }
+}
 
+impl<S: MechanicalSystem> History<S> {
     /// The impulse at the end of a step, from that at its start. Averages of the multipliers with the weights `1 − τ` and `τ`,
     /// they belong to the times `⅓ h` and `⅔ h`.
     #[inline(always)]
@@ -141,73 +174,148 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>> MultiplierStep<S, F> {
     }
 }
 
-// Written out, since a derive would demand the same of `S`.
-impl<S: MechanicalSystem, F, R: Copy> Clone for Span<'_, S, F, R> {
-    #[inline(always)]
-    fn clone(&self) -> Self {
-        Self {
-            free_difference: self.free_difference.clone(),
-            jacobian: self.jacobian.clone(),
-            directions: self.directions.clone(),
-            ..*self
-        }
-    }
-}
-
 /// Solver with `G₁ D G₀ᵀ`.
 type DriftGram<S, F> = <<F as KickDriftKick<S>>::Coupling as Coupling<S>>::GramFactors;
 
 impl<S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'_, S, F, R> {
-    /// Solves `φ(q₁(ℓ)) = 0` from the guess `impulse`.
-    ///
-    /// What follows the two corrections takes a copy of `self`, which therefore need not lie in memory until then. The
-    /// matrix for the velocities is evaluated before the last correction, which is too short to change it: so the
-    /// divisions in it do not wait for that correction.
+    /// Corrects the `predicted` impulse with the matrix there. `None` if that is singular.
     #[inline(always)]
-    fn solve(
+    fn attempt(
         &self,
-        mut impulse: S::PerConstraint<f64>,
+        predicted: &S::PerConstraint<f64>,
         tally: &mut impl Tally,
-    ) -> Result<Landing<S, R::Sum>, StepError> {
-        let mut q = self.end(&impulse);
+    ) -> Option<Attempt<S, R::Sum>> {
+        let q = self.end(predicted);
         let (first, jacobian) = self.constraints_at(&q);
         let matrix = self.mechanics.gram_matrix::<F::Coupling>(&jacobian, &self.directions);
-        let Ok(chord) = DriftGram::<S, F>::factor(&matrix) else { return self.clone().solve_anew(tally) };
+        let chord = DriftGram::<S, F>::factor(&matrix).ok()?;
         if chord.is_fallback() {
             tally.count_fallback();
         }
-        self.correct(&chord, &first, &mut q, &mut impulse);
-        let (second, jacobian) = self.constraints_at(&q);
-        self.correct(&chord, &second, &mut q, &mut impulse);
-        let displacement: S::PerConstraint<f64> = Array::from_fn(|c| matrix[c][c] * impulse[c]);
+        let displacement: S::PerConstraint<f64> = Array::from_fn(|c| matrix[c][c] * predicted[c]);
         // Written so that a NaN is not trusted.
         let is_trusted = (0..S::N_CONSTRAINTS).all(|c| first[c].abs() <= TRUSTED * displacement[c].abs());
-        if is_trusted
-            && is_round_off_next::<S>(&second, &first, &displacement)
-            && (0..S::N_CONSTRAINTS).all(|c| second[c].abs() <= SHORT * displacement[c].abs())
-            && let Ok(gram) = self.free.legendre().factor_gram(self.mechanics, &jacobian, tally)
-        {
-            return Ok(Landing { q, impulse, gram, corrections: CHORDS });
-        }
-        // Taken apart and put together: the values of the other path stay in registers.
-        let Landing { q, impulse, gram, corrections } =
-            self.clone().continue_from([first, second], is_trusted, q, impulse, tally)?;
-        Ok(Landing { q, impulse, gram, corrections })
+        let correction = self.correction(&chord, &first);
+        Some(if const { S::STRUCTURE.has_quadratic_constraints() } {
+            let reach = self.mechanics.reach(&jacobian, q.value().borrow());
+            self.correct_by_curvature(&chord, q, first, correction, &reach, is_trusted)
+        } else {
+            self.correct_by_evaluation(&chord, q, first, correction, &displacement, is_trusted)
+        })
     }
 
-    /// Newton's iteration after two corrections with one matrix, for the `residuals`, that led to `q`.
-    #[inline(never)]
-    fn continue_from(
-        self,
-        [first, second]: [S::PerConstraint<f64>; 2],
+    /// Makes the correction for the residual `first` and, where what it leaves is not round-off of terms as large as `reach`, another:
+    /// of quadratic constraints that is known without an evaluation.
+    #[inline(always)]
+    fn correct_by_curvature(
+        &self,
+        chord: &DriftGram<S, F>,
+        mut q: R::Sum,
+        first: S::PerConstraint<f64>,
+        mut correction: Correction<S>,
+        reach: &S::PerConstraint<f64>,
         is_trusted: bool,
-        q: R::Sum,
-        impulse: S::PerConstraint<f64>,
+    ) -> Attempt<S, R::Sum> {
+        let is_round_off = |left: &S::PerConstraint<f64>| {
+            (0..S::N_CONSTRAINTS).all(|c| left[c].abs() <= newton::TARGET * reach[c].abs())
+        };
+        let second = self.remainder(&q, &correction.moved);
+        let mut corrections = 1;
+        let mut is_solved = is_round_off(&second);
+        if !is_solved {
+            correction = correction.and(&self.correction(chord, &second));
+            let both = self.remainder(&q, &correction.moved);
+            is_solved = is_round_off(&Array::from_fn(|c| both[c] - second[c]));
+            corrections = CHORDS;
+        }
+        move_by::<S, _>(&mut q, &correction.moved);
+        let (_, jacobian) = self.constraints_at(&q);
+        let residuals = [first, second];
+        Attempt { q, correction, residuals, jacobian, corrections, is_trusted, is_solved }
+    }
+
+    /// Makes the correction for the residual `first`, and one for the residual that it leaves, judged against the `displacement` by the
+    /// constraint forces. The matrix for the velocities is evaluated before the last correction, which must be too short to
+    /// change it: so the divisions in it do not wait for that correction.
+    #[inline(always)]
+    fn correct_by_evaluation(
+        &self,
+        chord: &DriftGram<S, F>,
+        mut q: R::Sum,
+        first: S::PerConstraint<f64>,
+        correction: Correction<S>,
+        displacement: &S::PerConstraint<f64>,
+        is_trusted: bool,
+    ) -> Attempt<S, R::Sum> {
+        move_by::<S, _>(&mut q, &correction.moved);
+        let (second, jacobian) = self.constraints_at(&q);
+        let next = self.correction(chord, &second);
+        move_by::<S, _>(&mut q, &next.moved);
+        let is_solved = is_round_off_next::<S>(&second, &first, displacement)
+            && (0..S::N_CONSTRAINTS).all(|c| second[c].abs() <= SHORT * displacement[c].abs());
+        let (correction, residuals) = (correction.and(&next), [first, second]);
+        Attempt { q, correction, residuals, jacobian, corrections: CHORDS, is_trusted, is_solved }
+    }
+
+    /// The `momentum` less `G₀ᵀ ℓ`.
+    #[inline(always)]
+    fn pulled(&self, mut momentum: R::Sum, impulse: &S::PerConstraint<f64>) -> R::Sum {
+        let terms = momentum.terms_mut().as_mut();
+        self.mechanics.subtract_constraint_force(self.jacobian.as_ref(), impulse.as_ref(), terms);
+        momentum
+    }
+
+    /// Ends the step: overwrites `state` with the end on the constraints.
+    #[inline(always)]
+    fn land(
+        self,
+        Landing { q: position, impulse, gram, corrections }: Landing<S, R::Sum>,
+        expected: &S::PerConstraint<f64>,
+        momentum: R::Sum,
+        history: &mut History<S>,
+        state: &mut State<S>,
+        tally: &mut impl Tally,
+    ) -> Result<[Lost<S, R>; 2], StepError> {
+        let Self { mechanics, free, t_end: t, .. } = self;
+        tally.count_corrections(corrections);
+        let (q, lost_q) = position.split();
+        let kicked = free.kicked_at_end(mechanics, t, &q, momentum.terms());
+        let momentum = momentum.with(kicked);
+        let (_, jacobian) = S::constraint_derivatives(&mechanics.constants, t, &q);
+        let (v, momentum) = free.legendre().project(mechanics, &gram, &jacobian, expected, momentum);
+        let (p, lost_p) = momentum.split();
+        state.replace(t, q, v, p)?;
+        history.remember(impulse);
+        Ok([lost_q, lost_p])
+    }
+
+    /// Ends a step for which the corrections with one matrix did not suffice.
+    #[inline(never)]
+    fn land_slowly(
+        self,
+        attempt: Option<Attempt<S, R::Sum>>,
+        momentum: R::Sum,
+        history: &mut History<S>,
+        state: &mut State<S>,
+        tally: &mut impl Tally,
+    ) -> Result<[Lost<S, R>; 2], StepError> {
+        let landing = match attempt {
+            Some(attempt) if attempt.is_trusted => self.continue_from(attempt, &history.predicted, tally)?,
+            _ => self.solve_anew(tally)?,
+        };
+        let expected = history.expected_end_impulse(&landing.impulse);
+        let momentum = self.pulled(momentum, &landing.impulse);
+        self.land(landing, &expected, momentum, history, state, tally)
+    }
+
+    /// Newton's iteration after corrections with one matrix.
+    fn continue_from(
+        &self,
+        Attempt { q, correction, residuals: [first, second], .. }: Attempt<S, R::Sum>,
+        predicted: &S::PerConstraint<f64>,
         tally: &mut impl Tally,
     ) -> Result<Landing<S, R::Sum>, StepError> {
-        if !is_trusted {
-            return self.solve_anew(tally);
-        }
+        let impulse = Array::from_fn(|c| predicted[c] + correction.impulse[c]);
         let scale = self.scale(&q);
         if is_round_off_next::<S>(&second, &first, &scale) {
             return self.landing(q, impulse, CHORDS, tally);
@@ -224,7 +332,7 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'_, S, F, R>
     /// Newton's iteration without the history.
     #[cold]
     #[inline(never)]
-    fn solve_anew(self, tally: &mut impl Tally) -> Result<Landing<S, R::Sum>, StepError> {
+    fn solve_anew(&self, tally: &mut impl Tally) -> Result<Landing<S, R::Sum>, StepError> {
         let none = S::PerConstraint::<f64>::from_fn(|_| 0.0);
         self.iterate(0, none.clone(), self.end(&none), none, tally)
     }
@@ -266,7 +374,9 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'_, S, F, R>
                 tally.count_fallback();
             }
             let scale = self.scale(&q);
-            self.correct(&gram, &residual, &mut q, &mut impulse);
+            let correction = self.correction(&gram, &residual);
+            move_by::<S, _>(&mut q, &correction.moved);
+            impulse = Array::from_fn(|c| impulse[c] + correction.impulse[c]);
             let is_last = is_round_off_next::<S>(&residual, &previous, &scale);
             match progress.record(relative_length::<S>(&residual, &scale), is_last) {
                 Ok(true) => return self.landing(q, impulse, corrections + progress.corrections(), tally),
@@ -299,33 +409,56 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'_, S, F, R>
     /// `q₁(ℓ) = q₀ − D G₀ᵀ ℓ + d_free`; the difference comes last, since it is known last.
     #[inline(always)]
     fn end(&self, impulse: &S::PerConstraint<f64>) -> R::Sum {
-        let mut end = self.round_off.position(self.start);
-        subtract::<S, F::Coupling>(&self.directions, impulse, end.terms_mut());
+        let mut end = self.round_off.position(&self.start);
+        move_by::<S, _>(&mut end, &self.along(impulse));
         end.plus(&self.free_difference)
     }
 
-    /// Applies the correction for `residual` to the impulse and to `q = q₁(ℓ)`. The derivative of `φ(q₁(ℓ))` is
-    /// `−G₁ D G₀ᵀ`, the `matrix` but for the sign.
+    /// The correction for `residual`. The derivative of `φ(q₁(ℓ))` is `−G₁ D G₀ᵀ`, the `matrix` but for the sign.
     #[inline(always)]
-    fn correct(
-        &self,
-        matrix: &DriftGram<S, F>,
-        residual: &S::PerConstraint<f64>,
-        q: &mut R::Sum,
-        impulse: &mut S::PerConstraint<f64>,
-    ) {
+    fn correction(&self, matrix: &DriftGram<S, F>, residual: &S::PerConstraint<f64>) -> Correction<S> {
         let mut correction = residual.clone();
-        matrix.solve(&mut correction);
-        subtract::<S, F::Coupling>(&self.directions, &correction, q.terms_mut());
-        for c in 0..S::N_CONSTRAINTS {
-            impulse[c] += correction[c];
+        let factor = matrix.solve_up_to_factor(&mut correction);
+        let moved = self.along(&correction);
+        let mut pull = S::PerCoordinate::<f64>::from_fn(|_| NOTHING);
+        self.mechanics.add_constraint_force(self.jacobian.as_ref(), correction.as_ref(), pull.as_mut());
+        Correction {
+            impulse: Array::from_fn(|c| correction[c] * factor),
+            pull: Array::from_fn(|i| pull[i] * factor),
+            moved: Array::from_fn(|i| moved[i] * factor),
         }
+    }
+
+    /// `D G₀ᵀ y`.
+    #[inline(always)]
+    fn along(&self, y: &S::PerConstraint<f64>) -> S::PerCoordinate<f64> {
+        let mut sum = S::PerCoordinate::<f64>::from_fn(|_| NOTHING);
+        if F::Coupling::IS_DIAGONAL {
+            for entry in S::STRUCTURE.jacobian.q {
+                sum[entry.col] += self.directions[entry.row][entry.col] * y[entry.row];
+            }
+        } else {
+            for c in 0..S::N_CONSTRAINTS {
+                for i in 0..S::N_COORDINATES {
+                    sum[i] += self.directions[c][i] * y[c];
+                }
+            }
+        }
+        sum
+    }
+
+    /// `φ(q − d) − φ(q) + G d = ½ dᵀ φ_qq d`, exactly.
+    #[inline(always)]
+    fn remainder(&self, q: &R::Sum, moved: &S::PerCoordinate<f64>) -> S::PerConstraint<f64> {
+        let curvature =
+            S::constraint_curvature(&self.mechanics.constants, self.t_end, q.value().borrow(), moved);
+        Array::from_fn(|c| 0.5 * curvature[c])
     }
 
     /// What the residuals at `end` are compared with: `Σᵢ |G_ci| rᵢ`, where `rᵢ` adds up the magnitudes of what `q₁` is
     /// found from.
     fn scale(&self, end: &R::Sum) -> S::PerConstraint<f64> {
-        let (start, end) = (self.start, end.value());
+        let (start, end) = (&self.start, end.value());
         let reach =
             Array::from_fn(|i| start[i].abs() + self.free_difference[i].abs() + end.borrow()[i].abs());
         self.mechanics.constraint_scale(&self.jacobian, &reach)
@@ -360,22 +493,22 @@ fn relative_length<S: MechanicalSystem>(
     length
 }
 
-/// Subtracts `Σ directions[c] y[c]` from `x`.
-#[inline]
-fn subtract<S: MechanicalSystem, C: Coupling<S>>(
-    directions: &Directions<S>,
-    y: &S::PerConstraint<f64>,
-    x: &mut S::PerCoordinate<f64>,
-) {
-    if C::IS_DIAGONAL {
-        for entry in S::STRUCTURE.jacobian.q {
-            x[entry.col] -= directions[entry.row][entry.col] * y[entry.row];
-        }
-    } else {
-        for c in 0..S::N_CONSTRAINTS {
-            for i in 0..S::N_COORDINATES {
-                x[i] -= directions[c][i] * y[c];
-            }
+/// Subtracts `moved` from the sum.
+#[inline(always)]
+fn move_by<S: MechanicalSystem, Q: Sum<S>>(sum: &mut Q, moved: &S::PerCoordinate<f64>) {
+    for i in 0..S::N_COORDINATES {
+        sum.terms_mut()[i] -= moved[i];
+    }
+}
+
+impl<S: MechanicalSystem> Correction<S> {
+    /// This correction and the next one.
+    #[inline(always)]
+    fn and(&self, next: &Self) -> Self {
+        Self {
+            impulse: Array::from_fn(|c| self.impulse[c] + next.impulse[c]),
+            pull: Array::from_fn(|i| self.pull[i] + next.pull[i]),
+            moved: Array::from_fn(|i| self.moved[i] + next.moved[i]),
         }
     }
 }

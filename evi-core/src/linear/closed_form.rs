@@ -48,6 +48,11 @@ impl Factorization<[f64; 1], [[f64; 1]; 1]> for Inverse1 {
         *b *= self.0;
     }
 
+    #[inline(always)]
+    fn solve_up_to_factor(&self, _: &mut [f64; 1]) -> f64 {
+        self.0
+    }
+
     #[inline]
     fn pivot_ratio(&self) -> f64 {
         1.0
@@ -86,8 +91,15 @@ impl Factorization<[f64; 2], [[f64; 2]; 2]> for Inverse2 {
 
     #[inline]
     fn solve(&self, x: &mut [f64; 2]) {
-        let ([[a, b], [c, d]], r) = (self.matrix, self.reciprocal_determinant);
-        *x = [(d * x[0] - b * x[1]) * r, (a * x[1] - c * x[0]) * r];
+        let r = self.solve_up_to_factor(x);
+        *x = x.map(|x| x * r);
+    }
+
+    #[inline(always)]
+    fn solve_up_to_factor(&self, x: &mut [f64; 2]) -> f64 {
+        let [[a, b], [c, d]] = self.matrix;
+        *x = [d * x[0] - b * x[1], a * x[1] - c * x[0]];
+        self.reciprocal_determinant
     }
 
     #[inline]

@@ -49,6 +49,14 @@ pub trait Factorization<V, M>: Sized {
     /// Overwrites the right-hand side `b` with the solution of `A x = b`.
     fn solve(&self, rhs: &mut V);
 
+    /// Overwrites the right-hand side `b` with `x / f` and returns `f`, where `A x = b`. A solution in closed form is a product with
+    /// a quotient that is known last: what is linear in `x` need not wait for it.
+    #[inline(always)]
+    fn solve_up_to_factor(&self, rhs: &mut V) -> f64 {
+        self.solve(rhs);
+        1.0
+    }
+
     /// Smallest pivot over largest, in `[0, 1]`: small values announce a singular matrix.
     fn pivot_ratio(&self) -> f64;
 

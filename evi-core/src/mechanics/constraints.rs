@@ -61,9 +61,12 @@ impl<S: MechanicalSystem> Mechanics<S> {
         jacobian: &S::PerJacobianEntry<f64>,
         directions: &Directions<S>,
     ) -> Gram<S> {
-        let mut gram: Gram<S> = Array::from_fn(|_| Array::from_fn(|_| NOTHING));
+        // Terms of even and of odd columns: two short chains of additions instead of a long one.
+        let nothing = || -> Gram<S> { Array::from_fn(|_| Array::from_fn(|_| NOTHING)) };
+        let (mut even, mut odd) = (nothing(), nothing());
         for entry in S::STRUCTURE.jacobian.q {
             let slope = entry.value(self.constants.as_ref(), jacobian.as_ref());
+            let gram = if entry.col % 2 == 0 { &mut even } else { &mut odd };
             if C::IS_DIAGONAL {
                 for other in S::STRUCTURE.jacobian.q {
                     if other.col == entry.col {
@@ -76,7 +79,7 @@ impl<S: MechanicalSystem> Mechanics<S> {
                 }
             }
         }
-        gram
+        Array::from_fn(|row| Array::from_fn(|col| even[row][col] + odd[row][col]))
     }
 
     /// `Σᵢ |G_ci| rᵢ` for a reach `rᵢ ≥ 0` of every coordinate.
@@ -92,6 +95,20 @@ impl<S: MechanicalSystem> Mechanics<S> {
             scale[entry.row] += slope.abs() * reach[entry.col];
         }
         scale
+    }
+
+    /// `G q`: of each constraint, no more than the terms that it adds up, and where it is homogeneous but for a constant, as much.
+    #[inline(always)]
+    pub(crate) fn reach(
+        &self,
+        jacobian: &S::PerJacobianEntry<f64>,
+        q: &S::PerCoordinate<f64>,
+    ) -> S::PerConstraint<f64> {
+        let mut reach = S::PerConstraint::<f64>::from_fn(|_| NOTHING);
+        for entry in S::STRUCTURE.jacobian.q {
+            reach[entry.row] += entry.value(self.constants.as_ref(), jacobian.as_ref()) * q[entry.col];
+        }
+        reach
     }
 
     /// `‖G_c‖`, the Euclidean norm of every constraint's gradient.
@@ -121,11 +138,13 @@ impl<S: MechanicalSystem> Mechanics<S> {
         jacobian: &[f64],
         v: &S::PerCoordinate<f64>,
     ) -> S::PerConstraint<f64> {
-        let mut rate = self.constraint_time_rate(jacobian);
+        let mut even = self.constraint_time_rate(jacobian);
+        let mut odd = S::PerConstraint::<f64>::from_fn(|_| NOTHING);
         for entry in S::STRUCTURE.jacobian.q {
+            let rate = if entry.col % 2 == 0 { &mut even } else { &mut odd };
             rate[entry.row] += entry.value(self.constants.as_ref(), jacobian) * v[entry.col];
         }
-        rate
+        Array::from_fn(|c| even[c] + odd[c])
     }
 
     /// Calls `add(row, col, value)` for every entry of `Σ μ φ_qq`, the second derivative of `μᵀφ`.

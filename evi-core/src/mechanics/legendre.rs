@@ -2,7 +2,7 @@
 
 use core::borrow::Borrow;
 
-use super::{AsScene, CoordinateMatrix, Mechanics, Sum};
+use super::{AsScene, CoordinateMatrix, Mechanics, NOTHING, Sum};
 use crate::array::Array;
 use crate::linear::{Factorization, SingularMatrix};
 use crate::newton::Tally;
@@ -122,9 +122,13 @@ impl<S: MechanicalSystem> ConstantLegendre<S> {
     ) -> f64 {
         let rate = mechanics.constraint_rate(jacobian.as_ref(), &self.velocity(momentum.value().borrow()));
         let mut rest = rate.clone();
-        gram.solve(&mut rest);
-        mechanics.subtract_constraint_force(jacobian.as_ref(), rest.as_ref(), momentum.terms_mut().as_mut());
-        (0..S::N_CONSTRAINTS).map(|c| rest[c] * rate[c]).sum()
+        let factor = gram.solve_up_to_factor(&mut rest);
+        let mut force = S::PerCoordinate::<f64>::from_fn(|_| NOTHING);
+        mechanics.add_constraint_force(jacobian.as_ref(), rest.as_ref(), force.as_mut());
+        for i in 0..S::N_COORDINATES {
+            momentum.terms_mut()[i] -= factor * force[i];
+        }
+        factor * (0..S::N_CONSTRAINTS).map(|c| rest[c] * rate[c]).sum::<f64>()
     }
 
     /// `(p − a) · v`.

@@ -8,7 +8,7 @@ mod tally;
 pub use tally::{Fallbacks, Statistics, Tally};
 
 /// Stop when the correction after this one would be below this fraction of the unknowns: a quarter of round-off.
-const TARGET: f64 = 0.25 * f64::EPSILON;
+pub(crate) const TARGET: f64 = 0.25 * f64::EPSILON;
 /// A correction that no longer shrinks ends the iteration only below this length (Hairer, McLachlan,
 /// Razakarivony, BIT 48 (2008) 231: iterate until the update stops decreasing); above it, it may grow once.
 const STAGNATION: f64 = 1e-12;

@@ -91,6 +91,8 @@ pub struct ConstraintStructure {
     pub gradient: Block,
     /// Whether it depends on time.
     pub on_t: bool,
+    /// Whether it is a polynomial of degree at most two in `q`: its curvature does not depend on `q`.
+    pub is_quadratic: bool,
     /// The earlier constraint that it repeats, structurally.
     pub repeats: Option<usize>,
 }

@@ -275,6 +275,18 @@ impl Structure {
         false
     }
 
+    /// Whether every constraint is a polynomial of degree at most two in `q`, and does not depend on time.
+    pub const fn has_quadratic_constraints(&self) -> bool {
+        let mut row = 0;
+        while row < self.each_constraint.len() {
+            if !self.each_constraint[row].is_quadratic || self.each_constraint[row].on_t {
+                return false;
+            }
+            row += 1;
+        }
+        true
+    }
+
     /// Whether neither `L` nor `φ` nor a force depends on time.
     pub const fn is_autonomous(&self) -> bool {
         !(self.lagrangian.on_t || self.constraints.on_t || self.forces.on.on_t)

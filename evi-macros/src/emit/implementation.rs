@@ -243,12 +243,18 @@ fn potential(potential: Potential) -> TokenStream {
 }
 
 fn constraint_structure(constraint: &ConstraintStructure) -> TokenStream {
-    let (gradient, on_t) = (block(constraint.gradient), constraint.on_t);
+    let ConstraintStructure { on_t, is_quadratic, .. } = *constraint;
+    let gradient = block(constraint.gradient);
     let repeats = match constraint.repeats {
         Some(earlier) => quote!(::core::option::Option::Some(#earlier)),
         None => quote!(::core::option::Option::None),
     };
-    quote!(::evi_core::__private::ConstraintStructure { gradient: #gradient, on_t: #on_t, repeats: #repeats })
+    quote!(::evi_core::__private::ConstraintStructure {
+        gradient: #gradient,
+        on_t: #on_t,
+        is_quadratic: #is_quadratic,
+        repeats: #repeats,
+    })
 }
 
 pub(super) fn operations(operations: Operations) -> TokenStream {

@@ -248,6 +248,7 @@ const _: () = {
                         on_t: false,
                     }),
                     on_t: false,
+                    is_quadratic: true,
                     repeats: ::core::option::Option::None,
                 },
                 ::evi_core::__private::ConstraintStructure {
@@ -257,6 +258,7 @@ const _: () = {
                         on_t: false,
                     }),
                     on_t: false,
+                    is_quadratic: true,
                     repeats: ::core::option::Option::None,
                 },
             ],

@@ -178,6 +178,7 @@ const _: () = {
                         on_t: false,
                     }),
                     on_t: false,
+                    is_quadratic: true,
                     repeats: ::core::option::Option::None,
                 },
             ],

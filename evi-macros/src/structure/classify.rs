@@ -55,6 +55,8 @@ pub(crate) enum Potential {
 pub(crate) struct ConstraintStructure {
     pub(crate) gradient: Block,
     pub(crate) on_t: bool,
+    /// No second derivative by coordinates varies with a coordinate.
+    pub(crate) is_quadratic: bool,
     /// The earlier constraint that is the same.
     pub(crate) repeats: Option<usize>,
 }
@@ -135,6 +137,7 @@ fn each_constraint(graph: &Graph, equations: &Equations) -> Vec<ConstraintStruct
     let structure = |row: usize| ConstraintStructure {
         gradient: block(graph, equations.jacobian_q.iter().filter(|partial| partial.row == row)),
         on_t: graph.dependence(constraints[row]).on_t,
+        is_quadratic: !graph.dependence(equations.curvature[row]).on_q,
         repeats: (0..row).find(|&earlier| are_same(graph, constraints[earlier], constraints[row])),
     };
     (0..constraints.len()).map(structure).collect()
