@@ -101,7 +101,7 @@ fn swing(amplitude: f64) -> Start<1> {
 #[test]
 fn long_runs_keep_their_energy_better() {
     let composed = Evi::midpoint(0.01).composed(Composition::kahan_li_8());
-    let galerkin = Galerkin::<4>::new(0.0025);
+    let galerkin = Galerkin::<4>::new(0.0025).by_newton();
     let charged = ChargedSphericalPendulum::STANDARD;
     let pendulum = Pendulum { m: 0.7, l: 1.1, g: GRAVITY };
     check("double pendulum, Kahan & Li 8", DOUBLE, composed, mild, 30.0);
@@ -111,6 +111,26 @@ fn long_runs_keep_their_energy_better() {
     check("charged pendulum, Kahan & Li 8", charged, composed, in_space(charged.l), 120.0);
     check("charged pendulum, Galerkin 4", charged, galerkin, in_space(charged.l), 80.0);
     check("pendulum in its angle, Kahan & Li 8", pendulum, composed, swing, 20.0);
+}
+
+/// A known limitation: passes over lanes keep the energy as well as compensated steps of Newton's iteration nearly do, but compensating them gains
+/// nothing.
+#[test]
+fn passes_gain_nothing_from_compensation() {
+    let galerkin = Galerkin::<4>::new(0.0025);
+    for (name, plain, compensated) in [
+        ("double pendulum", changes(DOUBLE, &galerkin, mild), changes(DOUBLE, &galerkin.compensated(), mild)),
+        (
+            "spherical pendulum",
+            changes(SPHERICAL, &galerkin, in_space(SPHERICAL.l)),
+            changes(SPHERICAL, &galerkin.compensated(), in_space(SPHERICAL.l)),
+        ),
+    ] {
+        println!("{name}: {:.1e} J, compensated {:.1e} J", plain[3], compensated[3]);
+        // 3.6e-14 J measured, of 10 J that are exchanged.
+        assert!(plain[3] < 1e-13 && compensated[3] < 1e-13, "{name}");
+        assert!(plain[3] / compensated[3] < 4.0, "{name}: it gains, say so");
+    }
 }
 
 /// Expects the motion without compensation to within a multiple of round-off: symplecticity and order are those of the same map.
