@@ -1,6 +1,8 @@
 //! Solvers of other projects solve the same problems: certified digits, each of their steps shown, errors with their numbers.
 
-use evi_benches::external::{Dop853Error, HeyokaError, Tolerances, dop853, heyoka};
+use evi_benches::external::{
+    DiffsolError, DiffsolMethod, Dop853Error, HeyokaError, Tolerances, diffsol, dop853, heyoka,
+};
 use evi_core::comparison::Solver;
 use evi_core::prelude::*;
 use evi_examples::{DoublePendulum, Start};
@@ -107,5 +109,34 @@ fn heyoka_reaches_certified_digits_where_it_is_installed() {
             let unknown = heyoka("perpetuum_mobile", &PENDULUM, (&q, &v), 1.0, &[1e-8], 1);
             assert!(matches!(unknown, Err(HeyokaError::UnknownScene { .. })), "{unknown:?}");
         }
+    }
+}
+
+#[test]
+fn diffsol_reaches_digits_where_it_is_built() {
+    let Start { q, v } = PENDULUM.at_angles(0.1, 0.1);
+    let Certified { t, q: end, .. } = DOUBLE_PENDULUM_MILD[0];
+    // Global errors of methods of low order are many times their tolerances; measured, rounded up.
+    for (method, tolerance, bound) in [
+        (DiffsolMethod::Bdf, 1e-10, 1e-6),
+        (DiffsolMethod::TrBdf2, 1e-8, 1e-5),
+        (DiffsolMethod::Esdirk34, 1e-8, 1e-5),
+    ] {
+        let mut solver = match diffsol(&PENDULUM, method, &q, &v, Tolerances::both(tolerance)) {
+            Ok(solver) => solver,
+            Err(error @ DiffsolError::NotBuilt) => {
+                assert!(!cfg!(feature = "diffsol"));
+                println!("{error}");
+                return;
+            }
+            Err(error) => panic!("{error}"),
+        };
+        let mut seen = 0;
+        solver.advance_visiting(0.5 * t, &mut |_| seen += 1).expect("regular");
+        assert_eq!(seen, solver.steps());
+        solver.advance_to(t).expect("regular");
+        let distance = largest_difference(solver.q(), end);
+        println!("{method:?}: {distance:.1e} in {} steps", solver.steps());
+        assert!(solver.t() == t && distance <= bound, "{distance:e}");
     }
 }

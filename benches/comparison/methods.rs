@@ -7,7 +7,7 @@ use evi_core::prelude::*;
 use evi_examples::Scene;
 
 use super::Refusal;
-use crate::external::{Tolerances, dop853};
+use crate::external::{DiffsolError, DiffsolMethod, Tolerances, diffsol, dop853};
 
 /// A method and how it starts on scenes of type `S`.
 pub struct Method<S> {
@@ -123,6 +123,12 @@ pub fn all<S: Scene>() -> Vec<Method<S>> {
         member("galerkin_8", 16, "variational, Lobatto IIIA-IIIB with 9 stages", |s, h| {
             run(s, Galerkin::<8>::new(h))
         }),
+        member("gauss_4", 8, "variational, Gauss collocation with 4 nodes", |s, h| {
+            run(s, Gauss::<4>::new(h))
+        }),
+        member("gauss_8", 16, "variational, Gauss collocation with 8 nodes", |s, h| {
+            run(s, Gauss::<8>::new(h))
+        }),
         baseline("rattle", 2, "leapfrog on the constraints", |s, h| run(s, Rattle::new(h))),
         baseline("shake", 2, "leapfrog on the constraints, velocities by differences", |s, h| {
             run(s, Shake::new(h))
@@ -130,18 +136,16 @@ pub fn all<S: Scene>() -> Vec<Method<S>> {
         baseline("implicit_midpoint", 2, "implicit midpoint rule", |s, h| run(s, ImplicitMidpoint::new(h))),
         baseline("generalized_alpha", 2, "generalized-α, index 3", |s, h| run(s, GeneralizedAlpha::new(h))),
         baseline("rk4", 4, "explicit Runge-Kutta, index-1 equations", |s, h| run(s, Rk4::new(h))),
-        baseline(
-            "midpoint_generic",
-            2,
-            "midpoint on matrices of run-time size, dual numbers",
-            |system: &S, h| {
-                let (q, v) = system.standard_motion();
-                let run = GenericEvi::midpoint(h).start(system.clone(), q.as_ref(), v.as_ref())?;
-                Ok(Box::new(run))
-            },
-        )
-        .on(Path::Generic),
-        baseline(
+        generic("midpoint_generic", 2, "midpoint on matrices of run-time size, dual numbers", |s: &S, h| {
+            let (q, v) = s.standard_motion();
+            Ok(Box::new(GenericEvi::midpoint(h).start(s.clone(), q.as_ref(), v.as_ref())?))
+        }),
+        generic("midpoint_8_generic", 8, "the same, 17 steps composed (Kahan, Li)", |s: &S, h| {
+            let (q, v) = s.standard_motion();
+            let scheme = GenericEvi::midpoint(h).composed(Composition::kahan_li_8());
+            Ok(Box::new(scheme.start(s.clone(), q.as_ref(), v.as_ref())?))
+        }),
+        external(
             "dop853",
             8,
             "explicit Runge-Kutta, index-1 equations, crate ode_solvers",
@@ -149,12 +153,16 @@ pub fn all<S: Scene>() -> Vec<Method<S>> {
                 let (q, v) = s.standard_motion();
                 Ok(dop853(s, &q, &v, Tolerances::both(tolerance))?)
             },
-        )
-        .on(Path::External),
-        baseline("heyoka", 20, "Taylor series, index-1 equations, compiled by heyoka", |_, _| {
+        ),
+        external("diffsol_bdf", 5, "BDF, index-1 equations, crate diffsol", |s, tolerance| {
+            run_of_diffsol(s, DiffsolMethod::Bdf, tolerance)
+        }),
+        external("diffsol_esdirk", 3, "ESDIRK34, index-1 equations, crate diffsol", |s, tolerance| {
+            run_of_diffsol(s, DiffsolMethod::Esdirk34, tolerance)
+        }),
+        program("heyoka", 20, "Taylor series, index-1 equations, compiled by heyoka", |_, _| {
             Err(Refusal::NotRun { reason: "a program of its own, asked for with --peers".into() }.into())
-        })
-        .on(Path::Program),
+        }),
     ]
 }
 
@@ -164,32 +172,36 @@ fn equilibrium<S: Scene>(system: &S) -> Result<S::PerCoordinate<f64>, Refusal> {
 
 type Start<S> = fn(&S, f64) -> Result<Box<dyn Solver>, Failure>;
 
-impl<S> Method<S> {
-    /// With a step size, on the specialised path.
-    const fn new(role: Role, name: &'static str, order: u32, summary: &'static str, start: Start<S>) -> Self {
-        let (path, resolution) = (Path::Specialised, Resolution::StepSize);
-        Self { facts: MethodFacts { name, path, role, order, resolution, summary }, start }
-    }
-
-    /// On another path; solvers from elsewhere choose their steps by a tolerance.
-    const fn on(mut self, path: Path) -> Self {
-        self.facts.path = path;
-        if matches!(path, Path::External | Path::Program) {
-            self.facts.resolution = Resolution::Tolerance;
-        }
-        self
-    }
+/// A row of the table on one path; what comes from elsewhere chooses its steps by a tolerance.
+macro_rules! rows {
+    ($($kind:ident: $role:ident, $path:ident, $resolution:ident;)*) => {
+        $(const fn $kind<S>(name: &'static str, order: u32, summary: &'static str, start: Start<S>) -> Method<S> {
+            let (path, role, resolution) = (Path::$path, Role::$role, Resolution::$resolution);
+            Method { facts: MethodFacts { name, path, role, order, resolution, summary }, start }
+        })*
+    };
 }
-
-const fn member<S>(name: &'static str, order: u32, summary: &'static str, start: Start<S>) -> Method<S> {
-    Method::new(Role::Member, name, order, summary, start)
-}
-
-const fn baseline<S>(name: &'static str, order: u32, summary: &'static str, start: Start<S>) -> Method<S> {
-    Method::new(Role::Baseline, name, order, summary, start)
+rows! {
+    member: Member, Specialised, StepSize;
+    baseline: Baseline, Specialised, StepSize;
+    generic: Baseline, Generic, StepSize;
+    external: Baseline, External, Tolerance;
+    program: Baseline, Program, Tolerance;
 }
 
 fn run<S: Scene, F: Scheme<S, Step: 'static>>(system: &S, scheme: F) -> Result<Box<dyn Solver>, Failure> {
     let (q, v) = system.standard_motion();
     Ok(Box::new(Simulation::new(system.clone(), scheme).start(q, v)?))
+}
+
+fn run_of_diffsol<S: Scene>(
+    system: &S,
+    method: DiffsolMethod,
+    tolerance: f64,
+) -> Result<Box<dyn Solver>, Failure> {
+    let (q, v) = system.standard_motion();
+    match diffsol(system, method, &q, &v, Tolerances::both(tolerance)) {
+        Err(DiffsolError::NotBuilt) => Err(Refusal::NotBuilt { feature: "diffsol" }.into()),
+        result => Ok(result?),
+    }
 }

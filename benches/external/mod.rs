@@ -4,10 +4,12 @@
 //! A general solver takes `q̇ = v`, `v̇ = a(t, q, v)` with the accelerations of the index-1 equations: constraints are
 //! differentiated twice and drift within its tolerance.
 
+mod diffsol;
 mod dop853;
 mod heyoka;
 mod index_one;
 
+pub use diffsol::{DiffsolError, DiffsolMethod, diffsol};
 pub use dop853::{Dop853Error, dop853};
 pub use heyoka::{HeyokaError, HeyokaRow, heyoka};
 

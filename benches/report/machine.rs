@@ -3,6 +3,7 @@
 use std::process::Command;
 use std::time::{SystemTime, UNIX_EPOCH};
 
+use evi_core::scalar::InstructionSet;
 use serde::{Deserialize, Serialize};
 
 /// Processor, compiler and source of a measurement.
@@ -14,7 +15,7 @@ pub(crate) struct Machine {
     compiler: String,
     /// Flags of the compiler beside those of the release profile.
     flags: String,
-    /// Vector instructions that the build may use without asking the processor.
+    /// Vector instructions that node-per-lane steps use here, and those of everything else.
     vector_instructions: String,
     revision: String,
     /// Seconds since 1970-01-01 UTC at which the measurement began.
@@ -30,7 +31,11 @@ impl Machine {
             system: std::env::consts::OS.to_owned(),
             compiler: env!("EVI_BENCHES_COMPILER").to_owned(),
             flags: env!("EVI_BENCHES_FLAGS").to_owned(),
-            vector_instructions: vector_instructions().to_owned(),
+            vector_instructions: format!(
+                "lanes {}, else {}",
+                InstructionSet::detect(),
+                compiled_instructions()
+            ),
             revision: revision().unwrap_or_else(|| "unknown".to_owned()),
             date: SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |time| time.as_secs()),
         }
@@ -58,7 +63,8 @@ fn processor() -> Option<String> {
     Some(line.split(':').nth(1)?.trim().to_owned())
 }
 
-const fn vector_instructions() -> &'static str {
+/// What the whole program is compiled for.
+const fn compiled_instructions() -> &'static str {
     if cfg!(target_feature = "avx512f") {
         "AVX-512"
     } else if cfg!(target_feature = "avx2") {

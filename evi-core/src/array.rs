@@ -12,6 +12,11 @@ pub trait Array<X>: Clone + AsRef<[X]> + AsMut<[X]> + IndexMut<usize, Output = X
 
     /// The array whose element `i` is `element(i)`.
     fn from_fn(element: impl FnMut(usize) -> X) -> Self;
+
+    /// The array of equal elements.
+    fn filled(element: X) -> Self
+    where
+        X: Copy;
 }
 
 impl<X: Clone, const N: usize> Array<X> for [X; N] {
@@ -20,6 +25,14 @@ impl<X: Clone, const N: usize> Array<X> for [X; N] {
     #[inline]
     fn from_fn(element: impl FnMut(usize) -> X) -> Self {
         core::array::from_fn(element)
+    }
+
+    #[inline(always)]
+    fn filled(element: X) -> Self
+    where
+        X: Copy,
+    {
+        [element; N]
     }
 }
 

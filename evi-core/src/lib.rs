@@ -39,6 +39,7 @@
 //! | feature | default | effect |
 //! |---|---|---|
 //! | `std` | yes | trajectories on the heap; comparisons; elementary functions of the platform. Without it the crate is `no_std` |
+//! | `dispatch` | yes | `Galerkin` and `Gauss` steps in the vector instructions of the machine that the program runs on |
 //! | `derive` | yes | re-exports `#[derive(MechanicalSystem)]` |
 //! | `source` | no | [`system::MechanicalSystem::SOURCE`] holds the generated code, to read |
 //! | `generic` | no | `generic::GenericEvi` for systems of run-time size; [`scalar::Scalar`] for the dual numbers of num-dual |
@@ -68,11 +69,11 @@ pub mod __private;
 
 /// What a simulation needs: the derive, schemes, and runs.
 pub mod prelude {
-    #[cfg(feature = "std")]
-    pub use crate::integrator::Galerkin;
     pub use crate::integrator::{
         Compensable, Composition, Evi, OneStep, Run, Scheme, Simulation, StartError, StepError, Symmetric,
     };
+    #[cfg(feature = "std")]
+    pub use crate::integrator::{Galerkin, Gauss};
     pub use crate::mechanics::State;
     pub use crate::scheme::{Frequency, Mollifier, Quadrature, SchemeError};
     pub use crate::system::MechanicalSystem;

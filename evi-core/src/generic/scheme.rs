@@ -6,7 +6,7 @@
 use super::GenericSystem;
 use super::derivatives::Seed;
 use super::run::GenericRun;
-use crate::integrator::StartError;
+use crate::integrator::{Composition, StartError};
 use crate::scheme::{
     Frequency, NodeCoefficients, Quadrature, SchemeError, check_interpolant, checked_step_size,
 };
@@ -52,6 +52,10 @@ pub struct GenericEvi {
     weights: Vec<f64>,
     h: f64,
     frequencies: Frequencies,
+    /// Fractions of a step that its stages take.
+    fractions: Vec<f64>,
+    /// Whether the nodes mirror each other, which compositions need.
+    symmetry: Result<(), SchemeError>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -78,7 +82,19 @@ impl GenericEvi {
             weights: quadrature.weights().to_vec(),
             h,
             frequencies: Frequencies::Uniform(Frequency::ZERO),
+            fractions: vec![1.0],
+            symmetry: quadrature.check_symmetry(),
         }
+    }
+
+    /// Takes the steps of this scheme as the stages of a composition, for order 4, 6 or 8 from symmetric nodes, as
+    /// [`Symmetric::composed`](crate::integrator::Symmetric::composed) does. The step size stays what it was.
+    #[must_use]
+    pub fn composed<const N: usize>(self, composition: Composition<N>) -> Self {
+        let stages =
+            |fraction: &f64| self.fractions.iter().map(move |inner| fraction * inner).collect::<Vec<_>>();
+        let fractions = composition.fractions().iter().flat_map(stages).collect();
+        Self { fractions, ..self }
     }
 
     /// Interpolates every coordinate with the same frequency.
@@ -135,9 +151,23 @@ impl GenericEvi {
         GenericRun::start_projected(self, system, (t, q, v))
     }
 
-    /// The nodes of a step for `n` coordinates.
-    pub(super) fn nodes(&self, n_coordinates: usize) -> Result<Nodes, SchemeError> {
-        let h = checked_step_size(self.h)?;
+    /// Step size.
+    pub(super) const fn step_size(&self) -> f64 {
+        self.h
+    }
+
+    /// The nodes of every stage of a step for `n` coordinates.
+    pub(super) fn stages(&self, n_coordinates: usize) -> Result<Vec<Nodes>, SchemeError> {
+        checked_step_size(self.h)?;
+        if self.fractions.len() > 1 {
+            self.symmetry?;
+        }
+        self.fractions.iter().map(|fraction| self.nodes(n_coordinates, fraction * self.h)).collect()
+    }
+
+    /// The nodes of a stage of size `h`.
+    fn nodes(&self, n_coordinates: usize, h: f64) -> Result<Nodes, SchemeError> {
+        let h = checked_step_size(h)?;
         let mut nodes = Nodes { h, nodes: Vec::new() };
         for (&offset, &weight) in self.offsets.iter().zip(&self.weights) {
             nodes.nodes.push(Node { offset, weight, coefficients: vec![], starts: vec![], ends: vec![] });
@@ -166,7 +196,7 @@ impl GenericEvi {
     }
 }
 
-/// The nodes of a step of size `h`.
+/// The nodes of a stage of size `h`.
 pub(super) struct Nodes {
     pub(super) h: f64,
     pub(super) nodes: Vec<Node>,

@@ -1,6 +1,6 @@
-//! One step of the generic path.
+//! One step of the generic path, in one stage or in those of a composition.
 //!
-//! In: a state. Out: the next state in a buffer of the caller, or why there is none. The equations, their scaling and the
+//! In: a state. Out: the next state in a buffer of the caller, or why there is none. The equations of a stage, their scaling and the
 //! stopping rule are those of the specialised path:
 //!
 //! ```text
@@ -42,6 +42,12 @@ impl GenericState {
         Self { t: 0.0, q: zeros(), v: zeros(), p: zeros(), inputs, jacobian }
     }
 
+    /// A state of no system, which takes the place of one that is lent. Without memory.
+    fn empty() -> Self {
+        let [q, v, p, inputs] = [Vec::new(), Vec::new(), Vec::new(), Vec::new()];
+        Self { t: 0.0, q, v, p, inputs, jacobian: DMatrix::zeros(0, 0) }
+    }
+
     fn is_finite(&self) -> bool {
         [&self.q, &self.v, &self.p].into_iter().flatten().all(|number| number.is_finite())
     }
@@ -50,7 +56,11 @@ impl GenericState {
 /// The one-step map with every buffer that it needs.
 pub(super) struct GenericStep<S> {
     pub(super) derivatives: Derivatives<S>,
-    nodes: Nodes,
+    stages: Vec<Nodes>,
+    /// The stage that is being taken.
+    stage: usize,
+    /// Where the stage begins that is being taken, but for the first.
+    between: GenericState,
     pub(super) kkt: Kkt,
     /// Right-hand side, then solution, of a linear solve: coordinates, then constraints.
     pub(super) unknowns: Vec<f64>,
@@ -66,11 +76,13 @@ pub(super) struct GenericStep<S> {
 }
 
 impl<S: GenericSystem> GenericStep<S> {
-    pub(super) fn new(system: S, nodes: Nodes) -> Self {
+    pub(super) fn new(system: S, stages: Vec<Nodes>) -> Self {
         let (n, m) = (system.n_coordinates(), system.n_constraints());
         Self {
+            between: GenericState::zero(&system),
             derivatives: Derivatives::new(system),
-            nodes,
+            stages,
+            stage: 0,
             kkt: Kkt::new(n, m),
             unknowns: vec![0.0; n + m],
             impulse: vec![0.0; m],
@@ -82,14 +94,24 @@ impl<S: GenericSystem> GenericStep<S> {
         }
     }
 
-    /// Step size.
-    pub(super) const fn h(&self) -> f64 {
-        self.nodes.h
-    }
-
     /// Overwrites `next` with the state one step after `state`; after an error `next` means nothing.
     pub(super) fn step(&mut self, state: &GenericState, next: &mut GenericState) -> Result<(), StepError> {
-        let h = self.h();
+        self.stage = 0;
+        self.take_stage(state, next)?;
+        while self.stage + 1 < self.stages.len() {
+            self.stage += 1;
+            let mut start = core::mem::replace(&mut self.between, GenericState::empty());
+            core::mem::swap(&mut start, next);
+            let outcome = self.take_stage(&start, next);
+            self.between = start;
+            outcome?;
+        }
+        Ok(())
+    }
+
+    /// Overwrites `next` with the state one stage after `state`.
+    fn take_stage(&mut self, state: &GenericState, next: &mut GenericState) -> Result<(), StepError> {
+        let h = self.stages[self.stage].h;
         self.solve(state, next)?;
         next.t = state.t + h;
         next.inputs.copy_from_slice(&state.inputs);
@@ -104,7 +126,7 @@ impl<S: GenericSystem> GenericStep<S> {
 
     /// Finds the difference `d = q₁ − q₀`; uses the configuration and the Jacobian of `end` as buffers.
     fn solve(&mut self, state: &GenericState, end: &mut GenericState) -> Result<(), StepError> {
-        let (n, h) = (state.q.len(), self.h());
+        let (n, h) = (state.q.len(), self.stages[self.stage].h);
         for (difference, velocity) in self.difference.iter_mut().zip(&state.v) {
             *difference = h * velocity;
         }
@@ -140,7 +162,8 @@ impl<S: GenericSystem> GenericStep<S> {
 
     /// Overwrites `unknowns` with the residual of the step equations at `(d, Λ)`, and `kkt` with their derivative.
     fn linearize(&mut self, state: &GenericState, end: &mut GenericState) {
-        let Self { derivatives, nodes, kkt, unknowns, impulse, difference, x, v, .. } = self;
+        let Self { derivatives, stages, stage, kkt, unknowns, impulse, difference, x, v, .. } = self;
+        let nodes = &stages[*stage];
         let (n, h) = (state.q.len(), nodes.h);
         let (momentum_row, constraint_row) = unknowns.split_at_mut(n);
         kkt.clear();
@@ -177,7 +200,8 @@ impl<S: GenericSystem> GenericStep<S> {
 
     /// Overwrites `momentum` with `p⁻ = D₂L_d(q₀, q₀ + d) + f⁺`.
     fn end_momentum(&mut self, state: &GenericState, momentum: &mut [f64]) {
-        let Self { derivatives, nodes, difference, x, v, .. } = self;
+        let Self { derivatives, stages, stage, difference, x, v, .. } = self;
+        let nodes = &stages[*stage];
         momentum.fill(0.0);
         for node in &nodes.nodes {
             node.interpolate(nodes.h, &state.q, difference, x, v);

@@ -4,14 +4,14 @@ use core::borrow::Borrow;
 
 use super::curves::check_soft_coordinates;
 use super::multipliers::MultiplierStep;
-use super::{Compensable, CompensableStep, IterationFailure, OneStep, Scheme, StepError, Symmetric};
+use super::positions::{self, Guess, Sags};
+use super::{Compensable, CompensableStep, OneStep, Scheme, StepError, Symmetric};
 use crate::array::Array;
-use crate::linear::{constraint_index, largest_magnitude};
 use crate::mechanics::{
-    ConstantLegendre, DiscreteLagrangian, Dropped, FoldedStep, LeapfrogStep, Lost, LostDigits, Mechanics,
-    ProjectionError, RoundOff, State, StepStart, Sum,
+    ConstantLegendre, DiscreteLagrangian, Dropped, FoldedStep, ImplicitStep, LeapfrogStep, Lost, LostDigits,
+    Mechanics, ProjectionError, RoundOff, State, StepSolution, StepStart, Sum,
 };
-use crate::newton::{self, Converged, Tally};
+use crate::newton::Tally;
 use crate::scheme::{
     Frequency, Interpolant, Linear, Quadrature, SceneFrequencies, SchemeError, checked_step_size,
 };
@@ -145,9 +145,15 @@ impl<S: MechanicalSystem, const K: usize, F: Interpolant<S>> Scheme<S> for Evi<K
         let legendre =
             if ConstantLegendre::<S>::EXISTS { ConstantLegendre::new(&action.mechanics).ok() } else { None };
         let (folded, leapfrog) = (folded.map(MultiplierStep::new), leapfrog.map(MultiplierStep::new));
-        Ok(EviStep { action, folded, leapfrog, legendre })
+        Ok(EviStep { action, folded, leapfrog, legendre, sags: Sags::none() })
     }
 }
+
+/// What positions and momenta lose in a step.
+type LostInStep<S, R> = [Lost<S, R>; 2];
+
+/// The difference of positions that a step has made, and what is lost.
+type Taken<S, R> = (<S as MechanicalSystem>::PerCoordinate<f64>, LostInStep<S, R>);
 
 /// The one-step map of an [`Evi`] for a scene, with everything folded in that is constant for a run.
 pub struct EviStep<S: MechanicalSystem, F: Interpolant<S>, const K: usize> {
@@ -158,10 +164,9 @@ pub struct EviStep<S: MechanicalSystem, F: Interpolant<S>, const K: usize> {
     leapfrog: Option<MultiplierStep<S, LeapfrogStep<S>>>,
     /// The Legendre transform of a constant mass matrix.
     legendre: Option<ConstantLegendre<S>>,
+    /// What the general step expects the next one from.
+    sags: Sags<S>,
 }
-
-/// The unknowns `(d, Λ)` of the step equations.
-type Unknowns<S> = (<S as MechanicalSystem>::PerCoordinate<f64>, <S as MechanicalSystem>::PerConstraint<f64>);
 
 impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> OneStep<S> for EviStep<S, F, K> {
     fn h(&self) -> f64 {
@@ -203,7 +208,7 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
         state: &mut State<S>,
         round_off: R,
         tally: &mut impl Tally,
-    ) -> Result<[Lost<S, R>; 2], StepError> {
+    ) -> Result<LostInStep<S, R>, StepError> {
         if FoldedStep::<S, F>::EXISTS
             && let Some(folded) = &mut self.folded
         {
@@ -214,28 +219,61 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
         {
             return leapfrog.advance(&self.action.mechanics, self.action.h(), state, round_off, tally);
         }
+        if FoldedStep::<S, F>::EXISTS || Self::MAY_LEAP {
+            let (end, lost) = self.advanced_rarely(state.clone(), round_off, tally)?;
+            *state = end;
+            return Ok(lost);
+        }
+        let guess = self.sags.guess(self.action.h(), &state.v);
+        let (difference, lost) = self.advance_implicitly(state, &guess, round_off, tally)?;
+        self.sags.remember(&guess, &difference);
+        Ok(lost)
+    }
+
+    /// The step of a scene that as a rule has a simpler one. It takes copies, so that nothing that the simpler one needs lies in memory
+    /// for it, and no history.
+    #[inline(always)]
+    fn advanced_rarely<R: RoundOff<S>>(
+        &self,
+        mut state: State<S>,
+        round_off: R,
+        tally: &mut impl Tally,
+    ) -> Result<(State<S>, LostInStep<S, R>), StepError> {
         let h = self.action.h();
-        let start_of_curve = Array::from_fn(|i| h * state.v[i]);
+        let guess = Guess::plain(Array::from_fn(|i| h * state.v[i]));
+        let (_, lost) = self.advance_implicitly(&mut state, &guess, round_off, tally)?;
+        Ok((state, lost))
+    }
+
+    /// The step whose positions and multipliers are found together; returns the difference of positions and what is lost.
+    #[inline(always)]
+    fn advance_implicitly<R: RoundOff<S>>(
+        &self,
+        state: &mut State<S>,
+        guess: &Guess<S>,
+        round_off: R,
+        tally: &mut impl Tally,
+    ) -> Result<Taken<S, R>, StepError> {
+        let t = state.t + self.action.h();
         let start = StepStart::new(self.mechanics(), state.t, &state.q, &state.p, &state.inputs);
-        let (difference, impulse) = self.solve(&start, start_of_curve, tally)?;
-        let t = state.t + h;
-        let (q, lost_q) = round_off.position(&state.q).plus(&difference).split();
+        let solution = positions::solve(&self.action, &start, guess, tally)?;
+        let (q, lost_q) = round_off.position(&state.q).plus(&solution.difference).split();
         let momentum = round_off.end_momentum(
             &state.p,
-            || self.action.end_momentum(state.t, &state.q, &difference, &state.inputs),
-            || self.action.momentum_gain(&start, &difference, &impulse),
+            || self.action.end_momentum(&start, &solution),
+            || self.action.momentum_gain(&start, &solution),
         );
         let (v, momentum) = self
-            .project(t, &q, momentum, &difference, &impulse, tally)
+            .project(t, &q, momentum, &solution, tally)
             .map_err(|cause| StepError::Projection { t, cause })?;
         let (p, lost_p) = momentum.split();
         state.replace(t, q, v, p)?;
-        Ok([lost_q, lost_p])
+        Ok((solution.difference, [lost_q, lost_p]))
     }
 
     /// The two-step view: `q_next` from two consecutive configurations, the first at time `t_prev`.
     ///
-    /// Solves `D₂L_d(q_prev, q_curr) + f⁺ + D₁L_d(q_curr, q_next) + f⁻ − h Gᵀ(q_curr) λ = 0`, `φ(q_next) = 0`; for scenes
+    /// Solves `D₂L_d(q_prev, q_curr) + f⁺ + D₁L_d(q_curr, q_next) + f⁻ − Gᵀ(q_curr) ℓ = 0`, `φ(q_next) = 0`; for scenes
     /// without inputs, which the compiler checks.
     ///
     /// # Errors
@@ -250,10 +288,11 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
         let inputs = Array::from_fn(|_| 0.0);
         let difference = S::PerCoordinate::<f64>::from_fn(|i| q_curr[i] - q_prev[i]);
         // The part of this momentum normal to the constraints at q_curr goes into the impulse: no projection needed.
-        let momentum = self.action.end_momentum(t_prev, q_prev, &difference, &inputs);
+        let momentum = self.action.arriving_momentum(t_prev, q_prev, &difference, &inputs);
         let t = t_prev + self.action.h();
         let start = StepStart::new(self.mechanics(), t, q_curr, &momentum, &inputs);
-        let (difference, _) = self.solve(&start, difference, &mut ())?;
+        let StepSolution { difference, .. } =
+            positions::solve(&self.action, &start, &Guess::plain(difference), &mut ())?;
         Ok(Array::from_fn(|i| q_curr[i] + difference[i]))
     }
 
@@ -264,11 +303,10 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
         t: f64,
         q: &S::PerCoordinate<f64>,
         mut momentum: P,
-        difference: &S::PerCoordinate<f64>,
-        impulse: &S::PerConstraint<f64>,
+        solution: &StepSolution<S>,
         tally: &mut impl Tally,
     ) -> Result<(S::PerCoordinate<f64>, P), ProjectionError> {
-        let (mechanics, h) = (self.mechanics(), self.action.h());
+        let mechanics = self.mechanics();
         if ConstantLegendre::<S>::EXISTS
             && let Some(legendre) = &self.legendre
         {
@@ -278,54 +316,11 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
             } else {
                 let (_, jacobian) = S::constraint_derivatives(&mechanics.constants, t, q);
                 let gram = legendre.factor_gram(mechanics, &jacobian, tally)?;
-                let expected = Array::from_fn(|c| impulse[c] / h);
-                legendre.project(mechanics, &gram, &jacobian, &expected, momentum)
+                legendre.project(mechanics, &gram, &jacobian, &solution.impulse, momentum)
             });
         }
-        let guess = Array::from_fn(|i| difference[i] / h);
+        let guess = Array::from_fn(|i| solution.difference[i] / self.action.h());
         let v = mechanics.project_momentum(t, q, &mut momentum, guess, tally)?;
         Ok((v, momentum))
-    }
-
-    /// The difference `d = q₁ − q₀` and the impulse `Λ` of the step from `start`, by Newton's iteration from the guess
-    /// `difference`.
-    #[inline]
-    fn solve(
-        &self,
-        start: &StepStart<'_, S>,
-        mut difference: S::PerCoordinate<f64>,
-        tally: &mut impl Tally,
-    ) -> Result<Unknowns<S>, StepError> {
-        let mut impulse = S::PerConstraint::<f64>::from_fn(|_| 0.0);
-        let mut constraint_residual = 0.0;
-        let mut smallest_pivot_ratio = 1.0_f64;
-        let iteration = newton::iterate(|correction| {
-            let (residual, kkt) = self.action.linearize(start, &difference, &impulse);
-            let constraint_rows = residual.as_ref()[S::N_COORDINATES..].iter().copied();
-            constraint_residual = largest_magnitude(constraint_rows);
-            let kkt = kkt.factor().map_err(|matrix| IterationFailure::Singular { correction, matrix })?;
-            smallest_pivot_ratio = smallest_pivot_ratio.min(kkt.pivot_ratio());
-            if kkt.is_fallback() {
-                tally.count_fallback();
-            }
-            let mut update = residual;
-            kkt.solve(&mut update);
-            for i in 0..S::N_COORDINATES {
-                difference[i] -= update[i];
-            }
-            for c in 0..S::N_CONSTRAINTS {
-                impulse[c] -= update[constraint_index::<S>(c)];
-            }
-            Ok(kkt.relative_length(|i| update[i], |i| start.q[i].abs() + difference[i].abs()))
-        });
-        match iteration {
-            Ok(Converged { corrections }) => {
-                tally.count_corrections(corrections);
-                Ok((difference, impulse))
-            }
-            Err(failure) => {
-                Err(IterationFailure::at(failure, start.t, constraint_residual, smallest_pivot_ratio))
-            }
-        }
     }
 }

@@ -1,13 +1,13 @@
 //! Exponential variational integrators with a matrix frequency.
 
 use super::multipliers::MultiplierStep;
-use super::{Evi, IterationFailure, OneStep, Scheme, StepError, Symmetric, Tally};
+use super::positions;
+use super::{Evi, OneStep, Scheme, StepError, Symmetric, Tally};
 use crate::array::Array;
-use crate::linear::{constraint_index, largest_magnitude};
 use crate::mechanics::{
-    Dropped, ImpulseStep, MatrixAction, Mechanics, QuadraticPart, Rounded, State, StepModes, StepStart,
+    Dropped, ImplicitStep, ImpulseStep, MatrixAction, Mechanics, QuadraticPart, Rounded, State, StepModes,
+    StepStart,
 };
-use crate::newton::{self, Converged};
 use crate::scheme::{Mollifier, Quadrature, SchemeError, checked_step_size};
 use crate::system::MechanicalSystem;
 
@@ -264,38 +264,13 @@ fn advance<S: MechanicalSystem, const K: usize>(
     tally: &mut impl Tally,
 ) -> Result<(), StepError> {
     let h = action.h();
-    let (_, jacobian) = S::constraint_derivatives(&action.mechanics.constants, state.t, &state.q);
-    let start = StepStart { t: state.t, q: &state.q, p: &state.p, inputs: &state.inputs, jacobian };
-    let mut difference = S::PerCoordinate::<f64>::from_fn(|i| h * state.v[i]);
-    let mut impulse = S::PerConstraint::<f64>::from_fn(|_| 0.0);
-    let mut constraint_residual = 0.0;
-    let mut smallest_pivot_ratio = 1.0_f64;
-    let iteration = newton::iterate(|correction| {
-        let (residual, kkt) = action.linearize(&start, &difference, &impulse);
-        constraint_residual = largest_magnitude(residual.as_ref()[S::N_COORDINATES..].iter().copied());
-        let kkt = kkt.factor_densely().map_err(|matrix| IterationFailure::Singular { correction, matrix })?;
-        smallest_pivot_ratio = smallest_pivot_ratio.min(kkt.pivot_ratio());
-        let mut update = residual;
-        kkt.solve(&mut update);
-        for i in 0..S::N_COORDINATES {
-            difference[i] -= update[i];
-        }
-        for c in 0..S::N_CONSTRAINTS {
-            impulse[c] -= update[constraint_index::<S>(c)];
-        }
-        Ok(kkt.relative_length(|i| update[i], |i| state.q[i].abs() + difference[i].abs()))
-    });
-    match iteration {
-        Ok(Converged { corrections }) => tally.count_corrections(corrections),
-        Err(failure) => {
-            return Err(IterationFailure::at(failure, state.t, constraint_residual, smallest_pivot_ratio));
-        }
-    }
-    let momentum = action.end_momentum(&start, &difference, &impulse);
+    let start = StepStart::new(&action.mechanics, state.t, &state.q, &state.p, &state.inputs);
+    let guess = Array::from_fn(|i| h * state.v[i]);
+    let solution = positions::iterate(action, &start, guess, tally)?;
+    let mut momentum = Rounded(action.end_momentum(&start, &solution));
     let t = state.t + h;
-    let q = Array::from_fn(|i| state.q[i] + difference[i]);
-    let mean_velocity = Array::from_fn(|i| difference[i] / h);
-    let mut momentum = Rounded(momentum);
+    let q = Array::from_fn(|i| state.q[i] + solution.difference[i]);
+    let mean_velocity = Array::from_fn(|i| solution.difference[i] / h);
     let v = action
         .mechanics
         .project_momentum(t, &q, &mut momentum, mean_velocity, tally)

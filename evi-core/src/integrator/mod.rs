@@ -10,8 +10,11 @@ mod curves;
 mod evi;
 #[cfg(feature = "std")]
 mod galerkin;
+#[cfg(feature = "std")]
+mod gauss;
 mod matrix_evi;
 mod multipliers;
+mod positions;
 mod run;
 mod simulation;
 #[cfg(feature = "std")]
@@ -22,7 +25,9 @@ pub use compensated::{Compensable, CompensableStep, Compensated, CompensatedStep
 pub use composition::{Composed, ComposedStep, Composition, Symmetric};
 pub use evi::{Evi, EviStep};
 #[cfg(feature = "std")]
-pub use galerkin::{Galerkin, GalerkinStep};
+pub use galerkin::{Galerkin, GalerkinStep, Iteration};
+#[cfg(feature = "std")]
+pub use gauss::{Gauss, GaussStep};
 pub use matrix_evi::{
     LinearisedAlong, LinearisedAt, MatrixEvi, MatrixEviStep, QuadraticModel, StepMode, Stiffness,
 };

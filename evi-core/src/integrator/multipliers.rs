@@ -17,7 +17,7 @@ use crate::system::MechanicalSystem;
 const CHORDS: usize = 2;
 
 /// A step without its constraint forces, with the impulses that it has needed so far. They affect the number of corrections and the last bits of
-/// a state, nothing else.
+/// a state, nothing else: a prediction that misses is not followed.
 pub(crate) struct MultiplierStep<S: MechanicalSystem, F> {
     free: F,
     /// The first guess of the next step: what a cubic through the last four impulses predicts.
@@ -25,6 +25,10 @@ pub(crate) struct MultiplierStep<S: MechanicalSystem, F> {
     /// Impulses of the last three steps, newest first.
     previous: [S::PerConstraint<f64>; 3],
 }
+
+/// A prediction is followed where it misses the displacement by the constraint forces by no more than this fraction: one that misses by more
+/// could lead to another root than a step without a past.
+const TRUSTED: f64 = 1.0 / 64.0;
 
 /// A last correction that is shorter than this fraction of the displacement by the constraint forces changes no matrix.
 const SHORT: f64 = 1.0 / (1_u64 << 40) as f64;
@@ -175,8 +179,11 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'_, S, F, R>
         self.correct(&chord, &first, &mut q, &mut impulse);
         let (second, jacobian) = self.constraints_at(&q);
         self.correct(&chord, &second, &mut q, &mut impulse);
-        let displacement = Array::from_fn(|c| matrix[c][c] * impulse[c]);
-        if is_round_off_next::<S>(&second, &first, &displacement)
+        let displacement: S::PerConstraint<f64> = Array::from_fn(|c| matrix[c][c] * impulse[c]);
+        // Written so that a NaN is not trusted.
+        let is_trusted = (0..S::N_CONSTRAINTS).all(|c| first[c].abs() <= TRUSTED * displacement[c].abs());
+        if is_trusted
+            && is_round_off_next::<S>(&second, &first, &displacement)
             && (0..S::N_CONSTRAINTS).all(|c| second[c].abs() <= SHORT * displacement[c].abs())
             && let Ok(gram) = self.free.legendre().factor_gram(self.mechanics, &jacobian, tally)
         {
@@ -184,7 +191,7 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'_, S, F, R>
         }
         // Taken apart and put together: the values of the other path stay in registers.
         let Landing { q, impulse, gram, corrections } =
-            self.clone().continue_from([first, second], q, impulse, tally)?;
+            self.clone().continue_from([first, second], is_trusted, q, impulse, tally)?;
         Ok(Landing { q, impulse, gram, corrections })
     }
 
@@ -193,10 +200,14 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'_, S, F, R>
     fn continue_from(
         self,
         [first, second]: [S::PerConstraint<f64>; 2],
+        is_trusted: bool,
         q: R::Sum,
         impulse: S::PerConstraint<f64>,
         tally: &mut impl Tally,
     ) -> Result<Landing<S, R::Sum>, StepError> {
+        if !is_trusted {
+            return self.solve_anew(tally);
+        }
         let scale = self.scale(&q);
         if is_round_off_next::<S>(&second, &first, &scale) {
             return self.landing(q, impulse, CHORDS, tally);

@@ -75,6 +75,28 @@ impl<S: MechanicalSystem> Kkt<S> {
         }
     }
 
+    /// Factors the matrix by the scene's own elimination, if its pivots are sound.
+    #[inline(always)]
+    pub(crate) fn factor_unscaled(&self) -> Option<S::KktFactors> {
+        S::KktFactors::factor_unscaled(&self.rows)
+    }
+
+    /// Weights of the squares in `Σ wᵢ xᵢ²`, which is at least the square of
+    /// [`relative_length`](FactoredKkt::relative_length) where no `Aᵢᵢ` vanishes.
+    #[inline(always)]
+    pub(crate) fn weights(&self, reference: impl Fn(usize) -> f64) -> S::PerCoordinate<f64> {
+        let inertia = S::PerCoordinate::<f64>::from_fn(|i| self.rows[i][i].abs());
+        let (mut reach, mut metric) = (-0.0, -0.0);
+        for i in 0..S::N_COORDINATES {
+            let square = reference(i) * reference(i);
+            reach += square;
+            metric += inertia[i] * square;
+        }
+        // (a + b)² ≤ 2 a² + 2 b².
+        let (per_reach, per_metric) = (2.0 / reach, 2.0 / metric.max(f64::MIN_POSITIVE));
+        Array::from_fn(|i| per_reach + inertia[i] * per_metric)
+    }
+
     /// Factors a matrix that may have entries outside of the scene's pattern.
     pub(crate) fn factor_densely(self) -> Result<FactoredKkt<S, S::DenseKktFactors>, SingularMatrix> {
         self.factor_scaled()

@@ -10,6 +10,8 @@ mod elimination;
 #[cfg(feature = "std")]
 mod in_place;
 mod kkt;
+#[cfg(feature = "std")]
+mod lane_ldl;
 mod pivoted;
 mod symmetric_eigen;
 mod triangular;
@@ -24,6 +26,8 @@ pub(crate) use in_place::InPlaceLu;
 #[cfg(feature = "generic")]
 pub(crate) use kkt::reciprocal_power_of_two;
 pub(crate) use kkt::{FactoredKkt, Kkt, constraint_index, unknowns};
+#[cfg(feature = "std")]
+pub(crate) use lane_ldl::{LaneGram, LaneMass};
 pub(crate) use pivoted::Pivoted;
 pub(crate) use symmetric_eigen::SymmetricEigen;
 pub(crate) use triangular::Cholesky;

@@ -4,10 +4,10 @@
 //! Euler-Lagrange equations are linear but for the constraints, and a step is a kick, a drift and a kick:
 //!
 //! ```text
-//! p½ = p₀ − (B q₀ + a + G₀ᵀΛ)/h      q₁ = q₀ + h A⁻¹ p½      p⁻ = p½ + (E q₁ + c)/h
+//! p½ = p₀ − B q₀ − a − G₀ᵀℓ      q₁ = q₀ + A⁻¹ p½      p⁻ = p½ + E q₁ + c
 //! ```
 //!
-//! with `A = −h D₁D₂L_d`, `A − B = h D₁D₁L_d` and `A + E = h D₂D₂L_d`. The matrices depend on parameters, scheme and `h`
+//! with `A = −D₁D₂L_d`, `A − B = D₁D₁L_d` and `A + E = D₂D₂L_d`. The matrices depend on parameters, scheme and `h`
 //! alone. They are folded once when a run starts: no kernel of `L` is evaluated under a step, its cost does not depend on
 //! the number of nodes, and positions are eliminated for good. Each of the three maps is symplectic whatever the rounding
 //! of its matrix, so that rounded coefficients cause no drift.
@@ -15,7 +15,8 @@
 use core::marker::PhantomData;
 
 use super::{
-    AsScene, ConstantLegendre, CoordinateMatrix, DiscreteLagrangian, KickDriftKick, Mechanics, Rows, Slot,
+    AsScene, ConstantLegendre, CoordinateMatrix, DiscreteLagrangian, ImplicitStep, KickDriftKick, Mechanics,
+    Rows, Slot,
 };
 use crate::array::Array;
 use crate::linear::SingularMatrix;
@@ -24,11 +25,11 @@ use crate::system::{LagrangianGradient, MechanicalSystem};
 
 /// A step without its constraint forces, on the curves of `F`.
 pub(crate) struct FoldedStep<S: MechanicalSystem, F> {
-    /// `q₀ ↦ −(B q₀ + a)/h`.
+    /// `q₀ ↦ −(B q₀ + a)`.
     start_kick: Kick<S>,
-    /// `q₁ ↦ (E q₁ + c)/h`.
+    /// `q₁ ↦ E q₁ + c`.
     end_kick: Kick<S>,
-    /// `h A⁻¹`.
+    /// `A⁻¹`.
     drift: CoordinateMatrix<S>,
     legendre: ConstantLegendre<S>,
     curves: PhantomData<F>,
@@ -63,19 +64,19 @@ impl<S: MechanicalSystem, F: Interpolant<S>> FoldedStep<S, F> {
         action.for_each_node(0.0, &origin, &origin, |node, weight, t, x, v| {
             let (LagrangianGradient { force, momentum }, hessian) =
                 S::lagrangian_derivatives(constants, t, x, v);
-            let add = |matrix: &mut Rows<S>, factor: f64, first, second| {
+            let add = |matrix: &mut Rows<S>, sign: f64, first, second| {
                 action.for_each_second_derivative(
                     node,
                     weight,
                     hessian.as_ref(),
                     first,
                     second,
-                    |row, col, value| matrix[row][col] += factor * value,
+                    |row, col, value| matrix[row][col] += sign * value,
                 );
             };
             add(&mut step_matrix, -1.0, Slot::START, Slot::END);
-            add(&mut start_matrix, 1.0 / h, Slot::START, Slot::BOTH);
-            add(&mut end_matrix, 1.0 / h, Slot::BOTH, Slot::END);
+            add(&mut start_matrix, 1.0, Slot::START, Slot::BOTH);
+            add(&mut end_matrix, 1.0, Slot::BOTH, Slot::END);
             for i in 0..S::N_COORDINATES {
                 let c = action.coefficients(node, i);
                 start_constant[i] += weight * (h * c.start() * force[i] + c.start_rate() * momentum[i]);
@@ -85,7 +86,7 @@ impl<S: MechanicalSystem, F: Interpolant<S>> FoldedStep<S, F> {
         Ok(Self {
             start_kick: Kick { linear: CoordinateMatrix::new(start_matrix), constant: start_constant },
             end_kick: Kick { linear: CoordinateMatrix::new(end_matrix), constant: end_constant },
-            drift: CoordinateMatrix::inverse_of(&step_matrix)?.scaled(h),
+            drift: CoordinateMatrix::inverse_of(&step_matrix)?,
             legendre: ConstantLegendre::new(&action.mechanics)?,
             curves: PhantomData,
         })

@@ -9,9 +9,9 @@
 //! a drift and a kick ([`super::ImpulseStep`] has the formulas).
 
 use super::coordinate_matrix::{add_transposed, times};
-use super::{Mechanics, QuadraticPart, Rows, StepModes, StepStart};
+use super::{ImplicitStep, Mechanics, QuadraticPart, Rows, StepModes, StepSolution, StepStart};
 use crate::array::Array;
-use crate::linear::{Kkt, unknowns};
+use crate::linear::{FactoredKkt, Kkt, SingularMatrix};
 use crate::scheme::{Mollifier, Quadrature};
 use crate::system::MechanicalSystem;
 
@@ -73,76 +73,6 @@ impl<S: MechanicalSystem, const K: usize> MatrixAction<S, K> {
         }
     }
 
-    /// Step size.
-    pub(crate) fn h(&self) -> f64 {
-        self.h
-    }
-
-    /// The residual of the step equations at `(d, Λ)` and their derivative, as in
-    /// [`DiscreteLagrangian::linearize`](super::DiscreteLagrangian::linearize):
-    ///
-    /// ```text
-    /// h (D⁻¹ d − p½(q₀, p₀, d)) + G₀ᵀΛ = 0      φ(t₁, q₁) = 0
-    /// ```
-    #[inline]
-    pub(crate) fn linearize(
-        &self,
-        start: &StepStart<'_, S>,
-        difference: &S::PerCoordinate<f64>,
-        impulse: &S::PerConstraint<f64>,
-    ) -> (S::PerUnknown<f64>, Kkt<S>) {
-        let h = self.h;
-        let mut kkt = Kkt::zero();
-        for row in 0..S::N_COORDINATES {
-            for col in 0..S::N_COORDINATES {
-                kkt.add_block(row, col, h * self.inverse_drift[row][col]);
-            }
-        }
-        let kicked = self.kicked_at_start(start, difference, Some(&mut kkt));
-        let drifted = times::<S>(&self.inverse_drift, difference);
-        let mut momentum_row = S::PerCoordinate::<f64>::from_fn(|i| h * (drifted[i] - kicked[i]));
-        let constants = &self.mechanics.constants;
-        let end = Array::from_fn(|i| start.q[i] + difference[i]);
-        let (residual, jacobian) = S::constraint_derivatives(constants, start.t + h, &end);
-        kkt.set_upper_jacobian(constants.as_ref(), start.jacobian.as_ref());
-        kkt.set_lower_jacobian(constants.as_ref(), jacobian.as_ref());
-        self.mechanics.add_constraint_force(start.jacobian.as_ref(), impulse.as_ref(), momentum_row.as_mut());
-        (unknowns::<S>(|i| momentum_row[i], |c| residual[c]), kkt)
-    }
-
-    /// The momentum `p⁻` at the end of a step whose difference and impulse `Λ` solve its equations.
-    #[inline]
-    pub(crate) fn end_momentum(
-        &self,
-        start: &StepStart<'_, S>,
-        difference: &S::PerCoordinate<f64>,
-        impulse: &S::PerConstraint<f64>,
-    ) -> S::PerCoordinate<f64> {
-        // From p₀ on, not from d/h: no difference of two large momenta.
-        let mut p = self.kicked_at_start(start, difference, None);
-        let impulse = S::PerConstraint::<f64>::from_fn(|c| impulse[c] / self.h);
-        self.mechanics.subtract_constraint_force(start.jacobian.as_ref(), impulse.as_ref(), p.as_mut());
-        let end = Array::from_fn(|i| start.q[i] + difference[i]);
-        let displacement = self.part.displacement(&end);
-        let linear = times::<S>(&self.kick, &displacement);
-        let Impulses { end, .. } = self.impulses(start, difference, None);
-        Array::from_fn(|i| p[i] + self.momentum_at_rest[i] + (linear[i] - end[i]))
-    }
-
-    /// `p½` without constraint forces; adds `−h ∂p½/∂d` to `kkt`.
-    #[inline]
-    fn kicked_at_start(
-        &self,
-        start: &StepStart<'_, S>,
-        difference: &S::PerCoordinate<f64>,
-        kkt: Option<&mut Kkt<S>>,
-    ) -> S::PerCoordinate<f64> {
-        let displacement = self.part.displacement(start.q);
-        let linear = times::<S>(&self.kick, &displacement);
-        let Impulses { start: impulse, .. } = self.impulses(start, difference, kkt);
-        Array::from_fn(|i| start.p[i] - self.momentum_at_rest[i] + (linear[i] - impulse[i]))
-    }
-
     #[inline]
     fn impulses(
         &self,
@@ -167,12 +97,7 @@ impl<S: MechanicalSystem, const K: usize> MatrixAction<S, K> {
                 sum.end[i] += weight * (0.5 * even[i] + odd[i]);
             }
             if let Some(kkt) = &mut kkt {
-                self.add_hessian(
-                    node,
-                    self.h * weight,
-                    &self.part.remaining_hessian(&self.mechanics, t, &x),
-                    kkt,
-                );
+                self.add_hessian(node, weight, &self.part.remaining_hessian(&self.mechanics, t, &x), kkt);
             }
         }
         sum
@@ -191,5 +116,70 @@ impl<S: MechanicalSystem, const K: usize> MatrixAction<S, K> {
                 kkt.add_block(row, col, weight * value);
             }
         }
+    }
+}
+
+impl<S: MechanicalSystem, const K: usize> ImplicitStep<S> for MatrixAction<S, K> {
+    type Factors = S::DenseKktFactors;
+
+    fn mechanics(&self) -> &Mechanics<S> {
+        &self.mechanics
+    }
+
+    fn h(&self) -> f64 {
+        self.h
+    }
+
+    /// `D⁻¹ d`.
+    #[inline]
+    fn inertia_times(&self, difference: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
+        times::<S>(&self.inverse_drift, difference)
+    }
+
+    /// `−p½`, but for the nodes.
+    #[inline]
+    fn start_row(&self, start: &StepStart<'_, S>) -> S::PerCoordinate<f64> {
+        let displacement = self.part.displacement(start.q);
+        let linear = times::<S>(&self.kick, &displacement);
+        Array::from_fn(|i| -(start.p[i] - self.momentum_at_rest[i] + linear[i]))
+    }
+
+    #[inline]
+    fn node_kick(
+        &self,
+        start: &StepStart<'_, S>,
+        difference: &S::PerCoordinate<f64>,
+        mut kkt: Option<&mut Kkt<S>>,
+    ) -> S::PerCoordinate<f64> {
+        if let Some(kkt) = &mut kkt {
+            for row in 0..S::N_COORDINATES {
+                for col in 0..S::N_COORDINATES {
+                    kkt.add_block(row, col, self.inverse_drift[row][col]);
+                }
+            }
+        }
+        let Impulses { start, .. } = self.impulses(start, difference, kkt);
+        Array::from_fn(|i| -start[i])
+    }
+
+    /// The modes of the quadratic part couple what the scene does not.
+    fn factor(kkt: Kkt<S>) -> Result<FactoredKkt<S, S::DenseKktFactors>, SingularMatrix> {
+        kkt.factor_densely()
+    }
+
+    fn end_momentum(
+        &self,
+        start: &StepStart<'_, S>,
+        StepSolution { difference, impulse, .. }: &StepSolution<S>,
+    ) -> S::PerCoordinate<f64> {
+        // From p₀ on, not from d/h: no difference of two large momenta.
+        let fixed = self.start_row(start);
+        let at_nodes = self.impulses(start, difference, None);
+        let mut p = S::PerCoordinate::<f64>::from_fn(|i| -fixed[i] - at_nodes.start[i]);
+        self.mechanics.subtract_constraint_force(start.jacobian.as_ref(), impulse.as_ref(), p.as_mut());
+        let end = Array::from_fn(|i| start.q[i] + difference[i]);
+        let displacement = self.part.displacement(&end);
+        let linear = times::<S>(&self.kick, &displacement);
+        Array::from_fn(|i| p[i] + self.momentum_at_rest[i] + (linear[i] - at_nodes.end[i]))
     }
 }

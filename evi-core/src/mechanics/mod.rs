@@ -12,8 +12,13 @@ mod folded_step;
 mod forces;
 #[cfg(feature = "std")]
 mod galerkin_equations;
+#[cfg(feature = "std")]
+mod gauss_passes;
+mod implicit_step;
 mod impulse_step;
 mod kick_drift_kick;
+#[cfg(feature = "std")]
+mod lane_step;
 mod leapfrog_step;
 mod legendre;
 mod linearisation;
@@ -23,6 +28,7 @@ mod momentum;
 mod observables;
 mod quadratic_part;
 mod round_off;
+mod separable_action;
 mod state;
 mod step_equations;
 
@@ -33,8 +39,13 @@ pub(crate) use folded_step::FoldedStep;
 pub(crate) use forces::{ForceDerivatives, ForcePoint};
 #[cfg(feature = "std")]
 pub(crate) use galerkin_equations::{GalerkinAction, Points};
+#[cfg(feature = "std")]
+pub(crate) use gauss_passes::{GaussEnd, GaussGuess, GaussPasses};
+pub(crate) use implicit_step::{ImplicitStep, StepSolution, StepStart};
 pub(crate) use impulse_step::ImpulseStep;
 pub(crate) use kick_drift_kick::KickDriftKick;
+#[cfg(feature = "std")]
+pub(crate) use lane_step::{FirstGuess, LaneEnd, LaneStep, Passes};
 pub(crate) use leapfrog_step::LeapfrogStep;
 pub(crate) use legendre::ConstantLegendre;
 pub use linearisation::Linearisation;
@@ -47,8 +58,9 @@ pub use quadratic_part::QuadraticPart;
 pub(crate) use quadratic_part::StepModes;
 pub use round_off::LostDigits;
 pub(crate) use round_off::{Dropped, Lost, RoundOff, Rounded, Sum};
+pub(crate) use separable_action::SeparableAction;
 pub use state::State;
-pub(crate) use step_equations::{DiscreteLagrangian, Slot, StepStart};
+pub(crate) use step_equations::{DiscreteLagrangian, Slot};
 
 use crate::array::Array;
 use crate::linear::Kkt;

@@ -6,19 +6,21 @@
 //! L_d(q₀, q₁) = h Σⱼ wⱼ L(t₀ + cⱼ h, xⱼ, vⱼ)
 //! ```
 //!
-//! A step from `(q₀, p₀)` solves, for the difference `d = q₁ − q₀` and the impulse `Λ = h·L` of the constraint force,
+//! A step from `(q₀, p₀)` solves, for the difference `d = q₁ − q₀` and the impulse `ℓ` of the constraint force,
 //!
 //! ```text
-//! h (−D₁L_d(q₀, q₁) − p₀) + G₀ᵀ Λ = 0        φ(t₁, q₁) = 0
+//! −D₁L_d(q₀, q₁) − p₀ + G₀ᵀ ℓ = 0        φ(t₁, q₁) = 0
 //! ```
 //!
-//! (Marsden & West, Acta Numerica 10 (2001), sec. 3.5; the first row times `h`, so that every entry of the matrix
-//! stays of order one as `h → 0`). `p⁻ = D₂L_d(q₀, q₁)` is the momentum that arrives at the end of the step. Where forces
-//! act, `∂L/∂q + f` stands for `∂L/∂q` in `D₁L_d` and `D₂L_d`: see [`super::forces`].
+//! (Marsden & West, Acta Numerica 10 (2001), sec. 3.5). `p⁻ = D₂L_d(q₀, q₁)` is the momentum that arrives at the end of the step.
+//! Where forces act, `∂L/∂q + f` stands for `∂L/∂q` in `D₁L_d` and `D₂L_d`: see [`super::forces`]. Where the mass matrix is constant, the
+//! kinetic part of both is folded over the nodes: see [`SeparableAction`].
 
-use super::{ForceDerivatives, ForcePoint, Mechanics, NOTHING};
+use super::{
+    ForceDerivatives, ForcePoint, ImplicitStep, Mechanics, NOTHING, SeparableAction, StepSolution, StepStart,
+};
 use crate::array::Array;
-use crate::linear::{Kkt, unknowns};
+use crate::linear::{FactoredKkt, Kkt, SingularMatrix};
 use crate::scheme::{InterpolationTable, NodeCoefficients, Quadrature, interpolate};
 use crate::system::{LagrangianGradient, MechanicalSystem};
 
@@ -30,32 +32,11 @@ pub(crate) struct DiscreteLagrangian<S: MechanicalSystem, T, const K: usize> {
     h: f64,
     /// `1/h`.
     inverse_h: f64,
-    /// `wⱼ h²`.
-    squared_weights: [f64; K],
-}
-
-/// Where a step starts, with what stays fixed during its Newton iteration.
-pub(crate) struct StepStart<'a, S: MechanicalSystem> {
-    pub(crate) t: f64,
-    pub(crate) q: &'a S::PerCoordinate<f64>,
-    pub(crate) p: &'a S::PerCoordinate<f64>,
-    pub(crate) inputs: &'a S::PerInput<f64>,
-    /// The varying entries of `G₀ = G(t₀, q₀)`.
-    pub(crate) jacobian: S::PerJacobianEntry<f64>,
-}
-
-impl<'a, S: MechanicalSystem> StepStart<'a, S> {
-    #[inline]
-    pub(crate) fn new(
-        mechanics: &Mechanics<S>,
-        t: f64,
-        q: &'a S::PerCoordinate<f64>,
-        p: &'a S::PerCoordinate<f64>,
-        inputs: &'a S::PerInput<f64>,
-    ) -> Self {
-        let (_, jacobian) = S::constraint_derivatives(&mechanics.constants, t, q);
-        Self { t, q, p, inputs, jacobian }
-    }
+    /// `wⱼ/h`.
+    divided_weights: [f64; K],
+    /// `wⱼ h`.
+    multiplied_weights: [f64; K],
+    separable: SeparableAction<S, K>,
 }
 
 /// How the position and the velocity times `h` at a node depend on one of the arguments of a step.
@@ -77,98 +58,99 @@ impl Slot {
 
 impl<S: MechanicalSystem, T: InterpolationTable, const K: usize> DiscreteLagrangian<S, T, K> {
     pub(crate) fn new(mechanics: Mechanics<S>, table: T, quadrature: Quadrature<K>, h: f64) -> Self {
-        let squared_weights = quadrature.weights().map(|weight| weight * h * h);
-        Self { mechanics, table, quadrature, h, inverse_h: 1.0 / h, squared_weights }
-    }
-
-    /// Step size.
-    #[inline]
-    pub(crate) fn h(&self) -> f64 {
-        self.h
-    }
-
-    /// The residual of the step equations at `(d, Λ)` and their derivative
-    ///
-    /// ```text
-    /// [ h A   G₀ᵀ ]      A = −D₁D₂ L_d: rows from slot 0, columns from slot 1.
-    /// [ G₁    0   ]
-    /// ```
-    ///
-    /// `A` is not symmetric when `L` couples `q` and `v` or forces act (then it holds `−∂f⁻/∂q₁`, too), and `G₁` moves with
-    /// the iterate: hence LU, not LDLᵀ.
-    #[inline]
-    pub(crate) fn linearize(
-        &self,
-        start: &StepStart<'_, S>,
-        difference: &S::PerCoordinate<f64>,
-        impulse: &S::PerConstraint<f64>,
-    ) -> (S::PerUnknown<f64>, Kkt<S>) {
-        let constants = &self.mechanics.constants;
-        let h = self.h;
-        let mut kkt = Kkt::zero();
-        let mut start_momentum = S::PerCoordinate::<f64>::from_fn(|_| NOTHING);
-        self.for_each_node(start.t, start.q, difference, |node, weight, t, x, v| {
-            let (mut gradient, hessian) = S::lagrangian_derivatives(constants, t, x, v);
-            if S::STRUCTURE.forces.exist() {
-                let at = ForcePoint { t, q: x, v, inputs: start.inputs };
-                let derivatives = self.mechanics.add_force_with_derivatives(at, &mut gradient.force);
-                self.subtract_force_derivatives(node, weight, &derivatives, &mut kkt);
-            }
-            self.subtract_d1(node, weight, &gradient, &mut start_momentum);
-            self.subtract_d2d1(node, weight, hessian.as_ref(), &mut kkt);
-        });
-        let end = Array::from_fn(|i| start.q[i] + difference[i]);
-        let (residual, jacobian) = S::constraint_derivatives(constants, start.t + h, &end);
-        kkt.set_upper_jacobian(constants.as_ref(), start.jacobian.as_ref());
-        kkt.set_lower_jacobian(constants.as_ref(), jacobian.as_ref());
-        let mut momentum_row = S::PerCoordinate::<f64>::from_fn(|i| h * (start_momentum[i] - start.p[i]));
-        self.mechanics.add_constraint_force(start.jacobian.as_ref(), impulse.as_ref(), momentum_row.as_mut());
-        (unknowns::<S>(|i| momentum_row[i], |c| residual[c]), kkt)
+        let mut action = Self {
+            mechanics,
+            table,
+            quadrature,
+            h,
+            inverse_h: 1.0 / h,
+            divided_weights: quadrature.weights().map(|weight| weight / h),
+            multiplied_weights: quadrature.weights().map(|weight| weight * h),
+            separable: SeparableAction::none(),
+        };
+        if SeparableAction::<S, K>::EXISTS {
+            action.separable = SeparableAction::new(&action);
+        }
+        action
     }
 
     /// `p⁻ = D₂L_d(q₀, q₀ + d) + f⁺ = Σⱼ wⱼ (h g₂ (∂L/∂q + f) + h g₂' ∂L/∂v)`.
     #[inline]
-    pub(crate) fn end_momentum(
+    pub(crate) fn arriving_momentum(
         &self,
         t: f64,
         q: &S::PerCoordinate<f64>,
         difference: &S::PerCoordinate<f64>,
         inputs: &S::PerInput<f64>,
     ) -> S::PerCoordinate<f64> {
-        let mut end_momentum = S::PerCoordinate::<f64>::from_fn(|_| NOTHING);
+        let mut momentum = if SeparableAction::<S, K>::EXISTS {
+            self.separable.end_momentum(T::IS_STRAIGHT, q, difference)
+        } else {
+            Array::from_fn(|_| NOTHING)
+        };
         self.for_each_node(t, q, difference, |node, weight, t, x, v| {
-            let mut gradient = S::lagrangian_gradient(&self.mechanics.constants, t, x, v);
-            self.mechanics.add_force(ForcePoint { t, q: x, v, inputs }, &mut gradient.force);
+            let gradient = self.gradient(ForcePoint { t, q: x, v, inputs });
             for i in 0..S::N_COORDINATES {
-                let c = self.table.coefficients(node, i);
-                end_momentum[i] +=
-                    weight * (self.h * c.end() * gradient.force[i] + c.end_rate() * gradient.momentum[i]);
+                momentum[i] += if SeparableAction::<S, K>::EXISTS {
+                    self.separable.end_weights[node][i] * gradient.force[i]
+                } else {
+                    let c = self.table.coefficients(node, i);
+                    weight * (self.h * c.end() * gradient.force[i] + c.end_rate() * gradient.momentum[i])
+                };
             }
         });
-        end_momentum
+        momentum
     }
 
-    /// `p⁻ − p₀ = (D₁ + D₂) L_d(q₀, q₀ + d) + f⁻ + f⁺ − G₀ᵀΛ/h`, by the step equations: the derivative of `L_d` in which both ends move
+    /// Whether the forces of a step act on both of its ends alike: those of a single node in the middle. Then the equations of the step
+    /// tell what they are, and none is evaluated where the iteration has ended.
+    #[inline(always)]
+    fn kicks_alike(&self) -> bool {
+        // Exactly the middle, where the coefficients of both ends agree to the last bit.
+        SeparableAction::<S, K>::EXISTS && K == 1 && self.quadrature.offsets()[0] == 0.0
+    }
+
+    /// `p⁻ − p₀ = (D₁ + D₂) L_d(q₀, q₀ + d) + f⁻ + f⁺ − G₀ᵀℓ`, by the step equations: the derivative of `L_d` in which both ends move
     /// together, and so no difference of large momenta.
+    #[inline(always)]
     pub(crate) fn momentum_gain(
         &self,
         start: &StepStart<'_, S>,
+        StepSolution { difference, impulse, node_kick }: &StepSolution<S>,
+    ) -> S::PerCoordinate<f64> {
+        let mut gain = if self.kicks_alike() {
+            Array::from_fn(|i| 2.0 * node_kick[i])
+        } else {
+            self.joint_momentum(start, difference)
+        };
+        self.mechanics.subtract_constraint_force(start.jacobian.as_ref(), impulse.as_ref(), gain.as_mut());
+        gain
+    }
+
+    /// `(D₁ + D₂) L_d(q₀, q₀ + d) + f⁻ + f⁺`.
+    fn joint_momentum(
+        &self,
+        start: &StepStart<'_, S>,
         difference: &S::PerCoordinate<f64>,
-        impulse: &S::PerConstraint<f64>,
     ) -> S::PerCoordinate<f64> {
         let mut gain = S::PerCoordinate::<f64>::from_fn(|_| NOTHING);
-        let pull = S::PerConstraint::<f64>::from_fn(|c| self.inverse_h * impulse[c]);
         self.for_each_node(start.t, start.q, difference, |node, weight, t, x, v| {
-            let mut gradient = S::lagrangian_gradient(&self.mechanics.constants, t, x, v);
-            self.mechanics.add_force(ForcePoint { t, q: x, v, inputs: start.inputs }, &mut gradient.force);
+            let gradient = self.gradient(ForcePoint { t, q: x, v, inputs: start.inputs });
             for i in 0..S::N_COORDINATES {
                 let c = self.table.coefficients(node, i);
                 gain[i] +=
                     weight * (self.h * c.even * gradient.force[i] + c.even_rate * gradient.momentum[i]);
             }
         });
-        self.mechanics.subtract_constraint_force(start.jacobian.as_ref(), pull.as_ref(), gain.as_mut());
         gain
+    }
+
+    /// `∂L/∂q + f` and `∂L/∂v`.
+    #[inline(always)]
+    fn gradient(&self, at: ForcePoint<'_, S>) -> LagrangianGradient<S, f64> {
+        let mut gradient = S::lagrangian_gradient(&self.mechanics.constants, at.t, at.q, at.v);
+        self.mechanics.add_force(at, &mut gradient.force);
+        gradient
     }
 
     /// Calls `visit(node, weight, t, x, v)` at every node of the interpolant from `q` to `q + difference`.
@@ -180,18 +162,17 @@ impl<S: MechanicalSystem, T: InterpolationTable, const K: usize> DiscreteLagrang
         difference: &S::PerCoordinate<f64>,
         mut visit: impl FnMut(usize, f64, f64, &S::PerCoordinate<f64>, &S::PerCoordinate<f64>),
     ) {
-        let half_sum = S::PerCoordinate::<f64>::from_fn(|i| q[i] + 0.5 * difference[i]);
         for node in 0..K {
-            let (x, v) = interpolate::<S>(&self.table, node, &half_sum, difference, self.inverse_h);
+            let (x, v) = interpolate::<S>(&self.table, node, q, difference, self.inverse_h);
             let node_time = t + (0.5 + self.quadrature.offsets()[node]) * self.h;
             visit(node, self.quadrature.weights()[node], node_time, &x, &v);
         }
     }
 
-    /// Subtracts this node's part of `D₁L_d = Σⱼ wⱼ (h g₁ ∂L/∂q + h g₁' ∂L/∂v)`, and of `f⁻` where the gradient's force
-    /// holds it, too.
-    #[inline]
-    fn subtract_d1(
+    /// Adds this node's part of `D₁L_d = Σⱼ wⱼ (h g₁ ∂L/∂q + h g₁' ∂L/∂v)` without what is folded, and of `f⁻` where the
+    /// gradient's force holds it, too.
+    #[inline(always)]
+    fn add_d1(
         &self,
         node: usize,
         weight: f64,
@@ -199,21 +180,27 @@ impl<S: MechanicalSystem, T: InterpolationTable, const K: usize> DiscreteLagrang
         sum: &mut S::PerCoordinate<f64>,
     ) {
         for i in 0..S::N_COORDINATES {
-            let c = self.table.coefficients(node, i);
-            sum[i] -=
-                weight * (self.h * c.start() * gradient.force[i] + c.start_rate() * gradient.momentum[i]);
+            sum[i] += if SeparableAction::<S, K>::EXISTS {
+                self.separable.start_weights[node][i] * gradient.force[i]
+            } else {
+                let c = self.table.coefficients(node, i);
+                weight * (self.h * c.start() * gradient.force[i] + c.start_rate() * gradient.momentum[i])
+            };
         }
     }
 
-    /// Subtracts this node's part of `h D₁D₂L_d`.
-    #[inline]
+    /// Subtracts this node's part of `D₁D₂L_d` without what is folded.
+    #[inline(always)]
     fn subtract_d2d1(&self, node: usize, weight: f64, hessian: &[f64], kkt: &mut Kkt<S>) {
-        self.for_each_second_derivative(node, weight, hessian, Slot::START, Slot::END, |row, col, value| {
-            kkt.add_block(row, col, -value);
-        });
+        if SeparableAction::<S, K>::EXISTS {
+            self.separable.subtract_slopes(&self.mechanics, node, hessian, kkt);
+        } else {
+            let subtract = |row, col, value: f64| kkt.add_block(row, col, -value);
+            self.for_each_second_derivative(node, weight, hessian, Slot::START, Slot::END, subtract);
+        }
     }
 
-    /// Subtracts this node's part of `h ∂f⁻/∂q₁ = Σⱼ wⱼ h g₁ (h ∂f/∂q g₂ + ∂f/∂v h g₂')`.
+    /// Subtracts this node's part of `∂f⁻/∂q₁ = Σⱼ wⱼ g₁ (h ∂f/∂q g₂ + ∂f/∂v h g₂')`.
     #[inline]
     fn subtract_force_derivatives(
         &self,
@@ -222,20 +209,19 @@ impl<S: MechanicalSystem, T: InterpolationTable, const K: usize> DiscreteLagrang
         derivatives: &ForceDerivatives<'_, S>,
         kkt: &mut Kkt<S>,
     ) {
-        let h = self.h;
         derivatives.for_each_by_q(|row, col, value| {
             let (of_row, of_col) = self.coefficients_of(node, row, col);
-            kkt.add_block(row, col, -(weight * h * h * of_row.start() * value * of_col.end()));
+            kkt.add_block(row, col, -(weight * self.h * of_row.start() * value * of_col.end()));
         });
         derivatives.for_each_by_v(|row, col, value| {
             let (of_row, of_col) = self.coefficients_of(node, row, col);
-            kkt.add_block(row, col, -(weight * h * of_row.start() * value * of_col.end_rate()));
+            kkt.add_block(row, col, -(weight * of_row.start() * value * of_col.end_rate()));
         });
     }
 
-    /// Calls `add(row, col, value)` for this node's part of the second derivative of `h L_d` by two slots,
+    /// Calls `add(row, col, value)` for this node's part of the second derivative of `L_d` by two slots,
     /// entry by entry of the Hessian's pattern:
-    /// `wⱼ (h² a L_qq b + h a L_qv b' + h a' L_vq b + a' L_vv b')`, where `a` and `a'` say how position and
+    /// `wⱼ (h a L_qq b + a L_qv b' + a' L_vq b + a' L_vv b' / h)`, where `a` and `a'` say how position and
     /// velocity times `h` at the node depend on the first slot, `b` and `b'` on the second.
     #[inline]
     pub(crate) fn for_each_second_derivative(
@@ -249,9 +235,8 @@ impl<S: MechanicalSystem, T: InterpolationTable, const K: usize> DiscreteLagrang
     ) {
         let constants = self.mechanics.constants.as_ref();
         let pattern = S::STRUCTURE.hessian;
-        let h = self.h;
         for entry in pattern.qq {
-            let value = self.squared_weights[node] * entry.value(constants, hessian);
+            let value = self.multiplied_weights[node] * entry.value(constants, hessian);
             let (row, col) = self.coefficients_of(node, entry.row, entry.col);
             add(entry.row, entry.col, (first.position)(&row) * value * (second.position)(&col));
             if entry.row != entry.col {
@@ -259,14 +244,27 @@ impl<S: MechanicalSystem, T: InterpolationTable, const K: usize> DiscreteLagrang
             }
         }
         for entry in pattern.vq {
-            let value = weight * h * entry.value(constants, hessian);
+            let value = weight * entry.value(constants, hessian);
             let (row, col) = self.coefficients_of(node, entry.row, entry.col);
             add(entry.row, entry.col, (first.rate)(&row) * value * (second.position)(&col));
             // ∂²L/∂q∂v is the transpose: its row is the coordinate, its column the velocity.
             add(entry.col, entry.row, (first.position)(&col) * value * (second.rate)(&row));
         }
-        for entry in pattern.vv {
-            let value = weight * entry.value(constants, hessian);
+        self.for_each_inertia(node, hessian, first, second, add);
+    }
+
+    /// The same for the part `wⱼ a' L_vv b' / h`.
+    #[inline]
+    pub(crate) fn for_each_inertia(
+        &self,
+        node: usize,
+        hessian: &[f64],
+        first: Slot,
+        second: Slot,
+        mut add: impl FnMut(usize, usize, f64),
+    ) {
+        for entry in S::STRUCTURE.hessian.vv {
+            let value = self.divided_weights[node] * entry.value(self.mechanics.constants.as_ref(), hessian);
             let (row, col) = self.coefficients_of(node, entry.row, entry.col);
             add(entry.row, entry.col, (first.rate)(&row) * value * (second.rate)(&col));
             if entry.row != entry.col {
@@ -284,5 +282,86 @@ impl<S: MechanicalSystem, T: InterpolationTable, const K: usize> DiscreteLagrang
     #[inline]
     fn coefficients_of(&self, node: usize, row: usize, col: usize) -> (NodeCoefficients, NodeCoefficients) {
         (self.table.coefficients(node, row), self.table.coefficients(node, col))
+    }
+}
+
+impl<S: MechanicalSystem, T: InterpolationTable, const K: usize> ImplicitStep<S>
+    for DiscreteLagrangian<S, T, K>
+{
+    type Factors = S::KktFactors;
+
+    fn mechanics(&self) -> &Mechanics<S> {
+        &self.mechanics
+    }
+
+    fn h(&self) -> f64 {
+        self.h
+    }
+
+    #[inline(always)]
+    fn inertia_times(&self, difference: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
+        if SeparableAction::<S, K>::EXISTS {
+            self.separable.inertia_times(difference)
+        } else {
+            Array::from_fn(|_| NOTHING)
+        }
+    }
+
+    #[inline(always)]
+    fn start_row(&self, start: &StepStart<'_, S>) -> S::PerCoordinate<f64> {
+        if SeparableAction::<S, K>::EXISTS {
+            let momentum = self.separable.start_momentum(T::IS_STRAIGHT, start.q);
+            Array::from_fn(|i| momentum[i] - start.p[i])
+        } else {
+            Array::from_fn(|i| -start.p[i])
+        }
+    }
+
+    /// `D₁L_d` without what is folded. The matrix `−D₁D₂L_d` is not symmetric when `L` couples `q` and `v` or forces act (then it holds
+    /// `−∂f⁻/∂q₁`, too).
+    #[inline(always)]
+    fn node_kick(
+        &self,
+        start: &StepStart<'_, S>,
+        difference: &S::PerCoordinate<f64>,
+        mut kkt: Option<&mut Kkt<S>>,
+    ) -> S::PerCoordinate<f64> {
+        if SeparableAction::<S, K>::EXISTS
+            && let Some(kkt) = &mut kkt
+        {
+            self.separable.add_inertia(kkt);
+        }
+        let mut kick = S::PerCoordinate::<f64>::from_fn(|_| NOTHING);
+        self.for_each_node(start.t, start.q, difference, |node, weight, t, x, v| {
+            let at = ForcePoint { t, q: x, v, inputs: start.inputs };
+            let gradient = if let Some(kkt) = &mut kkt {
+                let (mut gradient, hessian) = S::lagrangian_derivatives(&self.mechanics.constants, t, x, v);
+                if S::STRUCTURE.forces.exist() {
+                    let derivatives = self.mechanics.add_force_with_derivatives(at, &mut gradient.force);
+                    self.subtract_force_derivatives(node, weight, &derivatives, kkt);
+                }
+                self.subtract_d2d1(node, weight, hessian.as_ref(), kkt);
+                gradient
+            } else {
+                self.gradient(at)
+            };
+            self.add_d1(node, weight, &gradient, &mut kick);
+        });
+        kick
+    }
+
+    #[inline]
+    fn factor(kkt: Kkt<S>) -> Result<FactoredKkt<S>, SingularMatrix> {
+        kkt.factor()
+    }
+
+    #[inline(always)]
+    fn end_momentum(&self, start: &StepStart<'_, S>, solution: &StepSolution<S>) -> S::PerCoordinate<f64> {
+        if self.kicks_alike() {
+            let gain = self.momentum_gain(start, solution);
+            Array::from_fn(|i| start.p[i] + gain[i])
+        } else {
+            self.arriving_momentum(start.t, start.q, &solution.difference, start.inputs)
+        }
     }
 }

@@ -108,6 +108,14 @@ pub(crate) fn predicts_round_off(length: f64, previous: f64, scale: f64) -> bool
     length * length < target * denominator || length == 0.0
 }
 
+/// The same for squares of lengths relative to a scale of 1: neither root nor division.
+#[inline(always)]
+pub(crate) fn squares_predict_round_off(square: f64, previous: f64) -> bool {
+    const SQUARED: f64 = TARGET * TARGET;
+    let denominator = if previous > SQUARED { previous } else { SQUARED };
+    square * square < SQUARED * denominator
+}
+
 /// Applies corrections until they have converged; returns their number.
 ///
 /// # Errors
@@ -131,6 +139,16 @@ mod tests {
 
     fn lengths(sequence: &'static [f64]) -> Result<Converged, NotConverged> {
         iterate(|k| Ok(sequence[(k - 1).min(sequence.len() - 1)]))
+    }
+
+    #[test]
+    fn squares_are_judged_as_lengths_are() {
+        for previous in [1e-2, 1e-6, 1e-12, 1e-17, 0.0] {
+            for length in [1e-7, 1e-10, 1e-13, 1e-15, 1e-16, 1e-18, 0.0, f64::NAN, f64::INFINITY] {
+                let of_squares = squares_predict_round_off(length * length, previous * previous);
+                assert_eq!(of_squares, predicts_round_off(length, previous, 1.0), "{length:e} {previous:e}");
+            }
+        }
     }
 
     #[test]

@@ -9,6 +9,14 @@ pub trait Tally {
         let _ = corrections;
     }
 
+    /// The passes of a Galerkin step have not converged from the accelerations of the last steps, and begin again without them.
+    #[inline(always)]
+    fn count_restart(&mut self) {}
+
+    /// The passes of a Galerkin step have not converged, and Newton's iteration has taken their place.
+    #[inline(always)]
+    fn count_newton(&mut self) {}
+
     /// A pivot of the scene's own elimination was round-off, and the pivoted dense solve has taken its place.
     #[inline(always)]
     fn count_fallback(&mut self) {}
@@ -34,17 +42,31 @@ impl Tally for Fallbacks {
 /// Counts everything.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Statistics {
-    /// Corrections of Newton's iterations for the end points of the steps taken; 0 where steps need none. Not those of a
+    /// Corrections of the iterations for the end points of the steps taken, Newton's or passes; 0 where steps need none. Not those of a
     /// projection.
     pub corrections: u64,
     /// How often the pivoted dense solve has taken the place of the scene's own elimination.
     pub fallbacks: u64,
+    /// Galerkin steps whose passes have begun again without the past.
+    pub restarts: u64,
+    /// Galerkin steps whose passes have been given up for Newton's iteration.
+    pub newton_steps: u64,
 }
 
 impl Tally for Statistics {
     #[inline]
     fn count_corrections(&mut self, corrections: usize) {
         self.corrections += corrections as u64;
+    }
+
+    #[cold]
+    fn count_restart(&mut self) {
+        self.restarts += 1;
+    }
+
+    #[cold]
+    fn count_newton(&mut self) {
+        self.newton_steps += 1;
     }
 
     #[cold]

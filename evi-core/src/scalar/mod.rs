@@ -113,8 +113,16 @@ primitive_scalar!(f32:
 
 #[cfg(feature = "generic")]
 mod dual;
+#[cfg(feature = "std")]
+mod instruction_set;
+mod lanes;
 mod tangent;
 
+#[cfg(feature = "std")]
+pub use instruction_set::InstructionSet;
+#[cfg(feature = "std")]
+pub(crate) use instruction_set::LaneOperation;
+pub use lanes::{LANES, Lanes};
 pub(crate) use tangent::Tangent;
 
 #[cfg(test)]

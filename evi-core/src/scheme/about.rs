@@ -53,15 +53,17 @@ pub struct AboutTable<T, const N: usize> {
 }
 
 impl<T: InterpolationTable, const N: usize> InterpolationTable for AboutTable<T, N> {
+    const IS_STRAIGHT: bool = T::IS_STRAIGHT;
+
     #[inline]
     fn coefficients(&self, node: usize, coordinate: usize) -> NodeCoefficients {
         self.table.coefficients(node, coordinate)
     }
 
     #[inline]
-    fn evaluate(&self, node: usize, coordinate: usize, s: f64, d: f64) -> (f64, f64) {
+    fn evaluate(&self, node: usize, coordinate: usize, q: f64, d: f64) -> (f64, f64) {
         let reference = self.reference[coordinate];
-        let (x, rate) = self.table.evaluate(node, coordinate, s - reference, d);
+        let (x, rate) = self.table.evaluate(node, coordinate, q - reference, d);
         (reference + x, rate)
     }
 }

@@ -117,13 +117,17 @@ impl NodeCoefficients {
 
 /// The interpolant's coefficients at every node of a rule, in the storage that the interpolant needs.
 pub trait InterpolationTable {
+    /// Whether the curves are straight lines, known at compile time.
+    const IS_STRAIGHT: bool = false;
+
     /// The coefficients at a node for a coordinate.
     fn coefficients(&self, node: usize, coordinate: usize) -> NodeCoefficients;
 
-    /// `(x, h v)` at a node from the half-sum `s` and the difference `d` of the ends of a step.
+    /// `(x, h v)` at a node from the start `q` of a step and the difference `d` of its ends.
     #[inline]
-    fn evaluate(&self, node: usize, coordinate: usize, s: f64, d: f64) -> (f64, f64) {
+    fn evaluate(&self, node: usize, coordinate: usize, q: f64, d: f64) -> (f64, f64) {
         let c = self.coefficients(node, coordinate);
+        let s = q + 0.5 * d;
         (c.even * s + c.odd * d, c.even_rate * s + c.odd_rate * d)
     }
 }
@@ -193,14 +197,16 @@ pub struct LinearTable<const K: usize> {
 }
 
 impl<const K: usize> InterpolationTable for LinearTable<K> {
+    const IS_STRAIGHT: bool = true;
+
     #[inline]
     fn coefficients(&self, node: usize, _coordinate: usize) -> NodeCoefficients {
         NodeCoefficients::straight(self.offsets[node])
     }
 
     #[inline]
-    fn evaluate(&self, node: usize, _coordinate: usize, s: f64, d: f64) -> (f64, f64) {
-        (s + self.offsets[node] * d, d)
+    fn evaluate(&self, node: usize, _coordinate: usize, q: f64, d: f64) -> (f64, f64) {
+        (q + (0.5 + self.offsets[node]) * d, d)
     }
 }
 
@@ -317,18 +323,18 @@ fn kinetic_coefficient(weights: &[f64], nodes: &[NodeCoefficients]) -> f64 {
     weights.iter().zip(nodes).map(|(weight, c)| -weight * c.start_rate() * c.end_rate()).sum()
 }
 
-/// Interpolates a whole configuration: overwrites `x` and `v` at `node` from the ends' half-sum and difference.
+/// Interpolates a whole configuration: `x` and `v` at `node` from the start of a step and the difference of its ends.
 #[inline]
 pub(crate) fn interpolate<S: MechanicalSystem>(
     table: &impl InterpolationTable,
     node: usize,
-    half_sum: &S::PerCoordinate<f64>,
+    start: &S::PerCoordinate<f64>,
     difference: &S::PerCoordinate<f64>,
     inverse_h: f64,
 ) -> (S::PerCoordinate<f64>, S::PerCoordinate<f64>) {
     let mut v = S::PerCoordinate::<f64>::from_fn(|_| 0.0);
     let x = S::PerCoordinate::<f64>::from_fn(|i| {
-        let (position, rate) = table.evaluate(node, i, half_sum[i], difference[i]);
+        let (position, rate) = table.evaluate(node, i, start[i], difference[i]);
         v[i] = rate * inverse_h;
         position
     });

@@ -9,7 +9,11 @@ mod entire;
 mod estimate;
 mod fitted;
 mod frequency;
+#[cfg(feature = "std")]
+mod gauss_tables;
 mod growth;
+#[cfg(feature = "std")]
+mod lane_tables;
 mod mode;
 mod mollifier;
 #[cfg(feature = "std")]
@@ -27,7 +31,11 @@ pub use basis::{
 pub use estimate::curvature_frequency;
 pub use fitted::Fitted;
 pub use frequency::Frequency;
+#[cfg(feature = "std")]
+pub(crate) use gauss_tables::GaussTables;
 pub use growth::growth_rate;
+#[cfg(feature = "std")]
+pub(crate) use lane_tables::{Columns, LaneTables, PAST};
 pub(crate) use mode::ModeFlow;
 pub use mollifier::Mollifier;
 #[cfg(feature = "std")]

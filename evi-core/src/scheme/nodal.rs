@@ -13,6 +13,8 @@
 //! linear in the two highest of `p`. Nothing is divided by `u`: the tables go over into the polynomial ones as `u → 0` without
 //! cancellation.
 
+use std::sync::OnceLock;
+
 use super::{Frequency, Linear, Quadrature, SchemeError};
 use crate::system::MechanicalSystem;
 
@@ -158,6 +160,9 @@ impl<const S: usize> NodalTable<S> {
     }
 }
 
+/// The rules of `1 ..` intervals: their nodes are roots that are found once.
+static RULES: [OnceLock<(Nodes, Nodes)>; MOST_INTERVALS] = [const { OnceLock::new() }; MOST_INTERVALS];
+
 /// The Lobatto rule of `S + 1` nodes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LobattoNodes<const S: usize> {
@@ -175,16 +180,7 @@ impl<const S: usize> LobattoNodes<S> {
 
     pub(crate) fn new() -> Self {
         let () = Self::HAS_TABLE;
-        let (offsets, weights) = match S {
-            1 => padded(&Quadrature::<2>::lobatto()),
-            2 => padded(&Quadrature::<3>::lobatto()),
-            3 => padded(&Quadrature::<4>::lobatto()),
-            4 => padded(&Quadrature::<5>::lobatto()),
-            5 => padded(&Quadrature::<6>::lobatto()),
-            6 => padded(&Quadrature::<7>::lobatto()),
-            7 => padded(&Quadrature::<8>::lobatto()),
-            _ => padded(&Quadrature::<9>::lobatto()),
-        };
+        let (offsets, weights) = *RULES[S - 1].get_or_init(rule::<S>);
         let mut inverse_products = [0.0; MOST_NODES];
         for a in 0..=S {
             let others = (0..=S).filter(|&b| b != a);
@@ -224,6 +220,20 @@ impl<const S: usize> LobattoNodes<S> {
     }
 }
 
+/// Nodes and weights of `S + 1` nodes.
+fn rule<const S: usize>() -> (Nodes, Nodes) {
+    match S {
+        1 => padded(&Quadrature::<2>::lobatto()),
+        2 => padded(&Quadrature::<3>::lobatto()),
+        3 => padded(&Quadrature::<4>::lobatto()),
+        4 => padded(&Quadrature::<5>::lobatto()),
+        5 => padded(&Quadrature::<6>::lobatto()),
+        6 => padded(&Quadrature::<7>::lobatto()),
+        7 => padded(&Quadrature::<8>::lobatto()),
+        _ => padded(&Quadrature::<9>::lobatto()),
+    }
+}
+
 fn padded<const K: usize>(rule: &Quadrature<K>) -> (Nodes, Nodes) {
     let pad = |values: &[f64; K]| core::array::from_fn(|j| if j < K { values[j] } else { 0.0 });
     (pad(rule.offsets()), pad(rule.weights()))
@@ -258,6 +268,9 @@ fn series(k: usize, z: f64, x: f64, power: f64) -> f64 {
 
 /// The curves of a Galerkin integrator: polynomials, or mixed ones with a frequency for all coordinates or one for each.
 pub trait NodalCurves<System: MechanicalSystem> {
+    /// Whether all curves are polynomials.
+    const ARE_POLYNOMIALS: bool = false;
+
     /// The tables of all coordinates.
     type Tables<const S: usize>: NodalTables<S>;
 
@@ -291,6 +304,8 @@ impl<const S: usize, const N: usize> NodalTables<S> for [NodalTable<S>; N] {
 
 /// Polynomials; the straight line for one interval.
 impl<System: MechanicalSystem> NodalCurves<System> for Linear {
+    const ARE_POLYNOMIALS: bool = true;
+
     type Tables<const S: usize> = NodalTable<S>;
 
     fn tables<const S: usize>(&self, _h: f64) -> Result<NodalTable<S>, SchemeError> {

@@ -4,7 +4,7 @@
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 
-use super::implementation::{Kernels, dependence, entries, operations};
+use super::implementation::{Kernels, dependence, entries, inlining, operations};
 use crate::model::Model;
 use crate::schedule::{ForcePrograms, Program, Programs};
 use crate::structure::Structure;
@@ -66,8 +66,10 @@ impl Kernels<'_> {
     pub(super) fn forces(&self, ForcePrograms { values, derivatives }: &ForcePrograms) -> TokenStream {
         let writer = self.writer_with_inputs();
         let (statements, outputs) = writer.body(values);
+        let (of_values, of_derivatives) = (inlining(values), quote!(#[inline]));
         let values = self.function_with_inputs(
             "forces",
+            of_values,
             quote!(Self::PerCoordinate<T>),
             quote!(#statements [#(#outputs),*]),
         );
@@ -75,6 +77,7 @@ impl Kernels<'_> {
         let (forces, entries) = outputs.split_at(self.model.coordinates.len());
         let derivatives = self.function_with_inputs(
             "force_derivatives",
+            of_derivatives,
             quote!((Self::PerCoordinate<T>, Self::PerForceEntry<T>)),
             quote!(#statements ([#(#forces),*], [#(#entries),*])),
         );
@@ -84,6 +87,11 @@ impl Kernels<'_> {
     pub(super) fn observables(&self, program: &Program) -> TokenStream {
         let (statements, outputs) = self.writer_with_inputs().body(program);
         let returned = quote!(Self::PerObservable<T>);
-        self.function_with_inputs("observables", returned, quote!(#statements [#(#outputs),*]))
+        self.function_with_inputs(
+            "observables",
+            quote!(#[inline]),
+            returned,
+            quote!(#statements [#(#outputs),*]),
+        )
     }
 }

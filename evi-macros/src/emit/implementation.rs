@@ -268,6 +268,14 @@ pub(super) struct Kernels<'a> {
     slots: &'a ConstantSlots,
 }
 
+/// How a kernel asks to be inlined: always if it is small, since code over vector lanes gets the instructions of the function that it is
+/// inlined into, and counts eight times where the compiler decides.
+pub(super) fn inlining(program: &Program) -> TokenStream {
+    /// What the compiler inlines of code over `f64` by itself.
+    const MOST_OPERATIONS: usize = 120;
+    if program.operations.total() <= MOST_OPERATIONS { quote!(#[inline(always)]) } else { quote!(#[inline]) }
+}
+
 impl Kernels<'_> {
     fn constants(&self, program: &Program) -> TokenStream {
         let n_parameters = self.model.parameters.len();
@@ -290,14 +298,14 @@ impl Kernels<'_> {
 
     fn lagrangian(&self, program: &Program) -> TokenStream {
         let (statements, outputs) = self.writer(true).body(program);
-        self.function("lagrangian", true, quote!(T), quote!(#statements #(#outputs)*))
+        self.function("lagrangian", quote!(#[inline]), true, quote!(T), quote!(#statements #(#outputs)*))
     }
 
     fn lagrangian_gradient(&self, program: &Program) -> TokenStream {
         let (statements, outputs) = self.writer(true).body(program);
         let gradient = self.gradient(&outputs);
         let returned = quote!(::evi_core::__private::LagrangianGradient<Self, T>);
-        self.function("lagrangian_gradient", true, returned, quote!(#statements #gradient))
+        self.function("lagrangian_gradient", inlining(program), true, returned, quote!(#statements #gradient))
     }
 
     fn lagrangian_derivatives(&self, program: &Program) -> TokenStream {
@@ -307,6 +315,7 @@ impl Kernels<'_> {
         let returned = quote!((::evi_core::__private::LagrangianGradient<Self, T>, Self::PerHessianEntry<T>));
         self.function(
             "lagrangian_derivatives",
+            inlining(program),
             true,
             returned,
             quote!(#statements (#gradient, [#(#entries),*])),
@@ -316,7 +325,7 @@ impl Kernels<'_> {
     fn constraints(&self, program: &Program) -> TokenStream {
         let (statements, outputs) = self.writer(false).body(program);
         let returned = quote!(Self::PerConstraint<T>);
-        self.function("constraints", false, returned, quote!(#statements [#(#outputs),*]))
+        self.function("constraints", inlining(program), false, returned, quote!(#statements [#(#outputs),*]))
     }
 
     fn constraint_derivatives(&self, program: &Program) -> TokenStream {
@@ -325,6 +334,7 @@ impl Kernels<'_> {
         let returned = quote!((Self::PerConstraint<T>, Self::PerJacobianEntry<T>));
         self.function(
             "constraint_derivatives",
+            inlining(program),
             false,
             returned,
             quote!(#statements ([#(#residuals),*], [#(#entries),*])),
@@ -334,13 +344,20 @@ impl Kernels<'_> {
     fn constraint_curvature(&self, program: &Program) -> TokenStream {
         let (statements, outputs) = self.writer(true).body(program);
         let returned = quote!(Self::PerConstraint<T>);
-        self.function("constraint_curvature", true, returned, quote!(#statements [#(#outputs),*]))
+        self.function(
+            "constraint_curvature",
+            quote!(#[inline]),
+            true,
+            returned,
+            quote!(#statements [#(#outputs),*]),
+        )
     }
 
     /// A kernel of the constants `c`, the time `t`, positions `q` and, if it has them, velocities `v`.
     fn function(
         &self,
         name: &str,
+        inlining: TokenStream,
         has_velocities: bool,
         returned: TokenStream,
         body: TokenStream,
@@ -348,7 +365,7 @@ impl Kernels<'_> {
         let name = quote::format_ident!("{name}");
         let velocities = has_velocities.then(|| quote!(v: &Self::PerCoordinate<T>));
         quote! {
-            #[inline]
+            #inlining
             fn #name<T: ::evi_core::__private::Scalar>(
                 c: &Self::PerConstant<T>,
                 t: T,
@@ -378,12 +395,13 @@ impl Kernels<'_> {
     pub(super) fn function_with_inputs(
         &self,
         name: &str,
+        inlining: TokenStream,
         returned: TokenStream,
         body: TokenStream,
     ) -> TokenStream {
         let name = quote::format_ident!("{name}");
         quote! {
-            #[inline]
+            #inlining
             fn #name<T: ::evi_core::__private::Scalar>(
                 c: &Self::PerConstant<T>,
                 t: T,

@@ -494,7 +494,7 @@ const _: () = {
                 - (c[4usize] * ((c[0usize] * q[1usize]) + (c[1usize] * q[3usize])));
             x0
         }
-        #[inline]
+        #[inline(always)]
         fn lagrangian_gradient<T: ::evi_core::__private::Scalar>(
             c: &Self::PerConstant<T>,
             t: T,
@@ -510,7 +510,7 @@ const _: () = {
                 momentum: [x0, x1, x2, x3],
             }
         }
-        #[inline]
+        #[inline(always)]
         fn lagrangian_derivatives<T: ::evi_core::__private::Scalar>(
             c: &Self::PerConstant<T>,
             t: T,
@@ -532,7 +532,7 @@ const _: () = {
                 [],
             )
         }
-        #[inline]
+        #[inline(always)]
         fn constraints<T: ::evi_core::__private::Scalar>(
             c: &Self::PerConstant<T>,
             t: T,
@@ -544,7 +544,7 @@ const _: () = {
             let x3 = ((x0 * x0) + (x1 * x1)) - c[8usize];
             [x2, x3]
         }
-        #[inline]
+        #[inline(always)]
         fn constraint_derivatives<T: ::evi_core::__private::Scalar>(
             c: &Self::PerConstant<T>,
             t: T,

@@ -270,7 +270,7 @@ const _: () = {
                 - (c[3usize] * (q[0usize] * q[0usize]));
             x0
         }
-        #[inline]
+        #[inline(always)]
         fn lagrangian_gradient<T: ::evi_core::__private::Scalar>(
             c: &Self::PerConstant<T>,
             t: T,
@@ -284,7 +284,7 @@ const _: () = {
                 momentum: [x1],
             }
         }
-        #[inline]
+        #[inline(always)]
         fn lagrangian_derivatives<T: ::evi_core::__private::Scalar>(
             c: &Self::PerConstant<T>,
             t: T,
@@ -304,7 +304,7 @@ const _: () = {
                 [],
             )
         }
-        #[inline]
+        #[inline(always)]
         fn constraints<T: ::evi_core::__private::Scalar>(
             c: &Self::PerConstant<T>,
             t: T,
@@ -312,7 +312,7 @@ const _: () = {
         ) -> Self::PerConstraint<T> {
             []
         }
-        #[inline]
+        #[inline(always)]
         fn constraint_derivatives<T: ::evi_core::__private::Scalar>(
             c: &Self::PerConstant<T>,
             t: T,

@@ -274,7 +274,7 @@ const _: () = {
             let x1 = (c[1usize] * (v[0usize] * v[0usize])) + (x0 * c[2usize]);
             x1
         }
-        #[inline]
+        #[inline(always)]
         fn lagrangian_gradient<T: ::evi_core::__private::Scalar>(
             c: &Self::PerConstant<T>,
             t: T,
@@ -289,7 +289,7 @@ const _: () = {
                 momentum: [x2],
             }
         }
-        #[inline]
+        #[inline(always)]
         fn lagrangian_derivatives<T: ::evi_core::__private::Scalar>(
             c: &Self::PerConstant<T>,
             t: T,
@@ -311,7 +311,7 @@ const _: () = {
                 [x2],
             )
         }
-        #[inline]
+        #[inline(always)]
         fn constraints<T: ::evi_core::__private::Scalar>(
             c: &Self::PerConstant<T>,
             t: T,
@@ -319,7 +319,7 @@ const _: () = {
         ) -> Self::PerConstraint<T> {
             []
         }
-        #[inline]
+        #[inline(always)]
         fn constraint_derivatives<T: ::evi_core::__private::Scalar>(
             c: &Self::PerConstant<T>,
             t: T,

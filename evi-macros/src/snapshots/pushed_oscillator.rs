@@ -404,7 +404,7 @@ const _: () = {
                 - (c[4usize] * (q[0usize] * q[0usize]));
             x0
         }
-        #[inline]
+        #[inline(always)]
         fn lagrangian_gradient<T: ::evi_core::__private::Scalar>(
             c: &Self::PerConstant<T>,
             t: T,
@@ -419,7 +419,7 @@ const _: () = {
                 momentum: [x1, x2],
             }
         }
-        #[inline]
+        #[inline(always)]
         fn lagrangian_derivatives<T: ::evi_core::__private::Scalar>(
             c: &Self::PerConstant<T>,
             t: T,
@@ -440,7 +440,7 @@ const _: () = {
                 [],
             )
         }
-        #[inline]
+        #[inline(always)]
         fn constraints<T: ::evi_core::__private::Scalar>(
             c: &Self::PerConstant<T>,
             t: T,
@@ -448,7 +448,7 @@ const _: () = {
         ) -> Self::PerConstraint<T> {
             []
         }
-        #[inline]
+        #[inline(always)]
         fn constraint_derivatives<T: ::evi_core::__private::Scalar>(
             c: &Self::PerConstant<T>,
             t: T,
@@ -465,7 +465,7 @@ const _: () = {
         ) -> Self::PerConstraint<T> {
             []
         }
-        #[inline]
+        #[inline(always)]
         fn forces<T: ::evi_core::__private::Scalar>(
             c: &Self::PerConstant<T>,
             t: T,

@@ -402,7 +402,7 @@ const _: () = {
                     + (v[2usize] * v[2usize]))) - (c[2usize] * q[2usize]);
             x0
         }
-        #[inline]
+        #[inline(always)]
         fn lagrangian_gradient<T: ::evi_core::__private::Scalar>(
             c: &Self::PerConstant<T>,
             t: T,
@@ -417,7 +417,7 @@ const _: () = {
                 momentum: [x0, x1, x2],
             }
         }
-        #[inline]
+        #[inline(always)]
         fn lagrangian_derivatives<T: ::evi_core::__private::Scalar>(
             c: &Self::PerConstant<T>,
             t: T,
@@ -438,7 +438,7 @@ const _: () = {
                 [],
             )
         }
-        #[inline]
+        #[inline(always)]
         fn constraints<T: ::evi_core::__private::Scalar>(
             c: &Self::PerConstant<T>,
             t: T,
@@ -448,7 +448,7 @@ const _: () = {
                 + (q[2usize] * q[2usize])) - c[4usize];
             [x0]
         }
-        #[inline]
+        #[inline(always)]
         fn constraint_derivatives<T: ::evi_core::__private::Scalar>(
             c: &Self::PerConstant<T>,
             t: T,

@@ -302,7 +302,7 @@ const _: () = {
                 - ((q[1usize] * c[4usize]) + (c[3usize] * (x0 * x0)));
             x1
         }
-        #[inline]
+        #[inline(always)]
         fn lagrangian_gradient<T: ::evi_core::__private::Scalar>(
             c: &Self::PerConstant<T>,
             t: T,
@@ -321,7 +321,7 @@ const _: () = {
                 momentum: [x5, x6],
             }
         }
-        #[inline]
+        #[inline(always)]
         fn lagrangian_derivatives<T: ::evi_core::__private::Scalar>(
             c: &Self::PerConstant<T>,
             t: T,
@@ -353,7 +353,7 @@ const _: () = {
                 [x11, x12, x13],
             )
         }
-        #[inline]
+        #[inline(always)]
         fn constraints<T: ::evi_core::__private::Scalar>(
             c: &Self::PerConstant<T>,
             t: T,
@@ -361,7 +361,7 @@ const _: () = {
         ) -> Self::PerConstraint<T> {
             []
         }
-        #[inline]
+        #[inline(always)]
         fn constraint_derivatives<T: ::evi_core::__private::Scalar>(
             c: &Self::PerConstant<T>,
             t: T,

@@ -1,0 +1,122 @@
+//! Galerkin steps by passes over all nodes, a node per lane: first guesses, their rescue, and the end of a step.
+
+use core::borrow::Borrow;
+
+use crate::array::Array;
+use crate::integrator::{StepError, Tally};
+use crate::linear::{Factorization, SingularMatrix};
+use crate::mechanics::{
+    FirstGuess, LaneEnd, LaneStep, Lost, Mechanics, Passes, ProjectionError, RoundOff, State, Sum,
+};
+use crate::scalar::{InstructionSet, Lanes};
+use crate::scheme::PAST;
+use crate::system::MechanicalSystem;
+
+/// The passes of a scene, with the past that they begin from.
+pub(super) struct LanePasses<S: MechanicalSystem, const K: usize> {
+    step: LaneStep<S, K>,
+    instructions: InstructionSet,
+    /// The accelerations of the last steps, the last one first. They affect the number of passes and the last bits of a state,
+    /// nothing else.
+    past: [S::PerCoordinate<Lanes>; PAST],
+    /// How many of them are known.
+    known: usize,
+    h: f64,
+}
+
+impl<S: MechanicalSystem, const K: usize> LanePasses<S, K> {
+    /// Whether the scene's steps can be solved so.
+    pub(super) const EXIST: bool = LaneStep::<S, K>::EXISTS;
+
+    /// # Errors
+    /// [`SingularMatrix`] if the mass matrix is.
+    pub(super) fn new(mechanics: &Mechanics<S>, h: f64) -> Result<Self, SingularMatrix> {
+        Ok(Self {
+            step: LaneStep::new(mechanics, h)?,
+            instructions: InstructionSet::detect(),
+            past: core::array::from_fn(|_| Array::filled(Lanes::ZERO)),
+            known: 0,
+            h,
+        })
+    }
+
+    pub(super) const fn instruction_set(&self) -> InstructionSet {
+        self.instructions
+    }
+
+    /// Drops the past: the next step is not predicted from it.
+    pub(super) fn forget(&mut self) {
+        self.known = 0;
+    }
+
+    /// The end of the step from `start`, if the passes converge: from the accelerations of the last steps, or from that of the state.
+    #[inline]
+    pub(super) fn solve(
+        &mut self,
+        mechanics: &Mechanics<S>,
+        start: &State<S>,
+        tally: &mut impl Tally,
+    ) -> Option<LaneEnd<S>> {
+        if self.known == PAST {
+            let first = FirstGuess::Continued(&self.past);
+            if let Ok(end) = self.instructions.run(Passes { step: &mut self.step, start, first }) {
+                tally.count_corrections(end.passes);
+                return Some(end);
+            }
+            tally.count_restart();
+        }
+        self.begin(mechanics, start, tally)
+    }
+
+    /// The same without a past.
+    #[cold]
+    fn begin(
+        &mut self,
+        mechanics: &Mechanics<S>,
+        start: &State<S>,
+        tally: &mut impl Tally,
+    ) -> Option<LaneEnd<S>> {
+        let at_start = mechanics.acceleration_with(start.t, &start.q, &start.v, &start.inputs).ok()?;
+        let first = FirstGuess::Constant(&at_start.acceleration);
+        let end = self.instructions.run(Passes { step: &mut self.step, start, first }).ok()?;
+        tally.count_corrections(end.passes);
+        Some(end)
+    }
+
+    /// Overwrites `state` with the end of the step that the passes have found, on the constraints and the hidden ones to round-off, and returns the digits that
+    /// this loses.
+    #[inline]
+    pub(super) fn land<R: RoundOff<S>>(
+        &mut self,
+        mechanics: &Mechanics<S>,
+        state: &mut State<S>,
+        round_off: R,
+        end: LaneEnd<S>,
+        tally: &mut impl Tally,
+    ) -> Result<[Lost<S, R>; 2], StepError> {
+        let t = state.t + self.h;
+        let constants = &mechanics.constants;
+        let legendre = &self.step.legendre;
+        let mut position = round_off.position(&state.q).plus(&end.difference);
+        let (mut shares, jacobian) = S::constraint_derivatives(constants, t, position.value().borrow());
+        let gram = legendre
+            .factor_gram(mechanics, &jacobian, tally)
+            .map_err(|cause| StepError::Projection { t, cause: ProjectionError::Singular(cause) })?;
+        gram.solve(&mut shares);
+        let mut pull = S::PerCoordinate::<f64>::filled(0.0);
+        mechanics.subtract_constraint_force(jacobian.as_ref(), shares.as_ref(), pull.as_mut());
+        position = position.plus(&self.step.inverse_mass_times(&pull));
+        let (q, lost_q) = position.split();
+        let (_, jacobian) = S::constraint_derivatives(constants, t, &q);
+        let gain = self.step.momentum_gain(mechanics, (state, t), &q);
+        let momentum = round_off.momentum(&state.p).plus(&gain);
+        let unexpected = S::PerConstraint::<f64>::filled(0.0);
+        let (v, momentum) = legendre.project(mechanics, &gram, &jacobian, &unexpected, momentum);
+        let (p, lost_p) = momentum.split();
+        state.replace(t, q, v, p)?;
+        self.past.swap(0, 1);
+        self.past[0].clone_from(&self.step.accelerations);
+        self.known = PAST.min(self.known + 1);
+        Ok([lost_q, lost_p])
+    }
+}

@@ -1,0 +1,174 @@
+//! Newton's iteration on all nodes of a Gauss step at once.
+//!
+//! For the velocities `Vᵢ`, with `Qᵢ = q₀ + h Σⱼ Aᵢⱼ Vⱼ`, it solves
+//!
+//! ```text
+//! ∂L/∂v(Qᵢ, Vᵢ) − p₀ − h Σⱼ Aᵢⱼ (∂L/∂q + f)(Qⱼ, Vⱼ) = 0
+//! ```
+
+use core::marker::PhantomData;
+
+use crate::array::Array;
+use crate::integrator::{IterationFailure, StepError, Tally};
+use crate::linear::{InPlaceLu, largest_magnitude};
+use crate::mechanics::{ForcePoint, GaussEnd, Mechanics, State, relative};
+use crate::newton::{self, Converged};
+use crate::scheme::GaussTables;
+use crate::system::MechanicalSystem;
+
+/// The iteration with its storage.
+pub(super) struct GaussNewton<S, const K: usize> {
+    tables: GaussTables,
+    /// The matrix by columns; its factors while a correction is computed.
+    entries: Vec<f64>,
+    residual: Vec<f64>,
+    /// `Vᵢ`, node by node.
+    velocities: Vec<f64>,
+    factors: InPlaceLu,
+    scene: PhantomData<S>,
+}
+
+impl<S: MechanicalSystem, const K: usize> GaussNewton<S, K> {
+    pub(super) fn new(h: f64) -> Self {
+        let dimension = K * S::N_COORDINATES;
+        Self {
+            tables: GaussTables::new::<K>(h),
+            entries: vec![0.0; dimension * dimension],
+            residual: vec![0.0; dimension],
+            velocities: vec![0.0; dimension],
+            factors: InPlaceLu::new(dimension),
+            scene: PhantomData,
+        }
+    }
+
+    /// What the step from `start` changes.
+    pub(super) fn solve(
+        &mut self,
+        mechanics: &Mechanics<S>,
+        start: &State<S>,
+        tally: &mut impl Tally,
+    ) -> Result<GaussEnd<S>, StepError> {
+        let n = S::N_COORDINATES;
+        let scale = mechanics.unit_scale(start.t, &start.q, &start.v);
+        let in_units =
+            |x: &[f64]| largest_magnitude(x.iter().zip(scale.as_ref()).map(|(x, scale)| x / scale));
+        for velocities in self.velocities.chunks_exact_mut(n) {
+            velocities.copy_from_slice(start.v.as_ref());
+        }
+        let h = self.tables.weights.sum().abs();
+        let mut smallest_pivot_ratio = 1.0_f64;
+        let iteration = newton::iterate(|correction| {
+            self.linearize(mechanics, start);
+            self.factors
+                .factor(&mut self.entries)
+                .map_err(|matrix| IterationFailure::Singular { correction, matrix })?;
+            smallest_pivot_ratio = smallest_pivot_ratio.min(self.factors.pivot_ratio());
+            self.factors.solve(&self.entries, &mut self.residual);
+            let (mut length, mut reach) = (0.0, in_units(start.q.as_ref()));
+            for (velocities, update) in self.velocities.chunks_exact_mut(n).zip(self.residual.chunks_exact(n))
+            {
+                for i in 0..n {
+                    velocities[i] -= update[i];
+                }
+                length = largest_magnitude([length, h * in_units(update)]);
+                reach = largest_magnitude([reach, h * in_units(velocities)]);
+            }
+            Ok(relative(length, reach))
+        });
+        match iteration {
+            Ok(Converged { corrections }) => {
+                tally.count_corrections(corrections);
+                Ok(self.end(mechanics, start, corrections))
+            }
+            Err(failure) => Err(IterationFailure::at(failure, start.t, 0.0, smallest_pivot_ratio)),
+        }
+    }
+
+    /// `h Aᵢⱼ`.
+    fn stage(&self, i: usize, j: usize) -> f64 {
+        self.tables.stages[j].to_array()[i]
+    }
+
+    /// `tᵢ`, `Qᵢ` and `Vᵢ`.
+    fn node(&self, start: &State<S>, i: usize) -> (f64, S::PerCoordinate<f64>, S::PerCoordinate<f64>) {
+        let velocity = |j: usize, k: usize| self.velocities[j * S::N_COORDINATES + k];
+        let way = |k: usize| (0..K).map(|j| self.stage(i, j) * velocity(j, k)).sum::<f64>();
+        let q = Array::from_fn(|k| start.q[k] + way(k));
+        (start.t + self.tables.nodes.to_array()[i], q, Array::from_fn(|k| velocity(i, k)))
+    }
+
+    /// Overwrites `residual` with the left sides of the equations and `entries` with their derivative.
+    fn linearize(&mut self, mechanics: &Mechanics<S>, start: &State<S>) {
+        let n = S::N_COORDINATES;
+        let dimension = K * n;
+        let constants = &mechanics.constants;
+        self.residual.fill(0.0);
+        self.entries.fill(0.0);
+        for node in 0..K {
+            let (t, q, v) = self.node(start, node);
+            let (mut gradient, hessian) = S::lagrangian_derivatives(constants, t, &q, &v);
+            // What a change of `Qₘ` or `Vₘ` of node `m` does to its momentum and to its force, whose share of row `i` is `−h Aᵢₘ`.
+            let mut add = |row: usize, col: usize, (of_momentum, of_force): (f64, f64), is_by_q: bool| {
+                for i in 0..K {
+                    let share = if i == node { of_momentum } else { 0.0 }
+                        - self.tables.stages[node].to_array()[i] * of_force;
+                    for j in 0..K {
+                        let way = if is_by_q {
+                            self.tables.stages[j].to_array()[node]
+                        } else if j == node {
+                            1.0
+                        } else {
+                            0.0
+                        };
+                        self.entries[(j * n + col) * dimension + i * n + row] += share * way;
+                    }
+                }
+            };
+            let value = |entry: &crate::system::Entry| entry.value(constants.as_ref(), hessian.as_ref());
+            for entry in S::STRUCTURE.hessian.qq {
+                add(entry.row, entry.col, (0.0, value(entry)), true);
+                if entry.row != entry.col {
+                    add(entry.col, entry.row, (0.0, value(entry)), true);
+                }
+            }
+            for entry in S::STRUCTURE.hessian.vq {
+                add(entry.row, entry.col, (value(entry), 0.0), true);
+                add(entry.col, entry.row, (0.0, value(entry)), false);
+            }
+            for entry in S::STRUCTURE.hessian.vv {
+                add(entry.row, entry.col, (value(entry), 0.0), false);
+                if entry.row != entry.col {
+                    add(entry.col, entry.row, (value(entry), 0.0), false);
+                }
+            }
+            if S::STRUCTURE.forces.exist() {
+                let at = ForcePoint { t, q: &q, v: &v, inputs: &start.inputs };
+                let derivatives = mechanics.add_force_with_derivatives(at, &mut gradient.force);
+                derivatives.for_each_by_q(|row, col, value| add(row, col, (0.0, value), true));
+                derivatives.for_each_by_v(|row, col, value| add(row, col, (0.0, value), false));
+            }
+            for k in 0..n {
+                self.residual[node * n + k] += gradient.momentum[k] - start.p[k];
+                for i in 0..K {
+                    self.residual[i * n + k] -= self.tables.stages[node].to_array()[i] * gradient.force[k];
+                }
+            }
+        }
+    }
+
+    fn end(&self, mechanics: &Mechanics<S>, start: &State<S>, passes: usize) -> GaussEnd<S> {
+        let (mut difference, mut gain) =
+            (S::PerCoordinate::<f64>::filled(0.0), S::PerCoordinate::<f64>::filled(0.0));
+        for node in 0..K {
+            let (t, q, v) = self.node(start, node);
+            let mut force = S::lagrangian_gradient(&mechanics.constants, t, &q, &v).force;
+            mechanics.add_force(ForcePoint { t, q: &q, v: &v, inputs: &start.inputs }, &mut force);
+            let weight = self.tables.weights.to_array()[node];
+            for i in 0..S::N_COORDINATES {
+                difference[i] += weight * v[i];
+                gain[i] += weight * force[i];
+            }
+        }
+        GaussEnd { difference, gain, passes }
+    }
+}

@@ -1,0 +1,198 @@
+//! A Gauss step by passes over all nodes at once, a node per lane.
+//!
+//! In canonical variables, with velocities `Vᵢ` and forces `Wᵢ` at the nodes,
+//!
+//! ```text
+//! Qᵢ = q₀ + h Σⱼ Aᵢⱼ Vⱼ        Pᵢ = p₀ + h Σⱼ Aᵢⱼ Wⱼ        ∂L/∂v(Qᵢ, Vᵢ) = Pᵢ        Wᵢ = ∂L/∂q(Qᵢ, Vᵢ) + f(Qᵢ, Vᵢ)
+//! ```
+//!
+//! A pass evaluates `W`, `∂L/∂v` and the mass matrix at `(Q, V)` for the last `V`, takes `P` from `W`, and corrects `V` by a solve with the mass matrix at
+//! every node.
+
+use super::lane_step::{product, reach};
+use super::{Mechanics, State};
+use crate::array::Array;
+use crate::linear::LaneMass;
+use crate::newton::{NotConverged, Progress};
+use crate::scalar::{LaneOperation, Lanes, Scalar};
+use crate::scheme::{GaussTables, PAST};
+use crate::system::MechanicalSystem;
+
+/// One value per coordinate at every node.
+type Nodes<S> = <S as MechanicalSystem>::PerCoordinate<Lanes>;
+
+/// The passes of one scene, for one step size.
+pub(crate) struct GaussPasses<S: MechanicalSystem, const K: usize> {
+    constants: S::PerConstant<Lanes>,
+    tables: GaussTables,
+    mass: LaneMass<S>,
+    /// `Vᵢ` of the last passes.
+    pub(crate) velocities: Nodes<S>,
+}
+
+/// What a step changes.
+pub(crate) struct GaussEnd<S: MechanicalSystem> {
+    /// `q₁ − q₀`.
+    pub(crate) difference: S::PerCoordinate<f64>,
+    /// `p₁ − p₀`.
+    pub(crate) gain: S::PerCoordinate<f64>,
+    /// Passes taken.
+    pub(crate) passes: usize,
+}
+
+/// Where the passes begin.
+pub(crate) enum GaussGuess<'a, S: MechanicalSystem> {
+    /// From the velocities of the last steps, the last one first.
+    Continued(&'a [Nodes<S>; PAST]),
+    /// From the acceleration of the state.
+    Constant(&'a S::PerCoordinate<f64>),
+}
+
+/// Passes until they have converged, as an operation on lanes.
+pub(crate) struct GaussIteration<'a, S: MechanicalSystem, const K: usize> {
+    passes: &'a mut GaussPasses<S, K>,
+    start: &'a State<S>,
+    guess: GaussGuess<'a, S>,
+}
+
+impl<S: MechanicalSystem, const K: usize> LaneOperation for GaussIteration<'_, S, K> {
+    type Output = Result<GaussEnd<S>, NotConverged>;
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) -> Self::Output {
+        self.passes.iterate::<FUSED>(self.start, &self.guess)
+    }
+}
+
+impl<S: MechanicalSystem, const K: usize> GaussPasses<S, K> {
+    pub(crate) fn new(mechanics: &Mechanics<S>, h: f64) -> Self {
+        let nonzeros = S::STRUCTURE.hessian.vv.iter().map(|entry| (entry.col, entry.row));
+        Self {
+            constants: Array::from_fn(|i| Lanes::splat(mechanics.constants[i])),
+            tables: GaussTables::new::<K>(h),
+            mass: LaneMass::<S>::new(nonzeros, false),
+            velocities: Array::filled(Lanes::ZERO),
+        }
+    }
+
+    /// The passes of the step from `start`.
+    pub(crate) fn from<'a>(
+        &'a mut self,
+        start: &'a State<S>,
+        guess: GaussGuess<'a, S>,
+    ) -> GaussIteration<'a, S, K> {
+        GaussIteration { passes: self, start, guess }
+    }
+
+    #[inline(always)]
+    fn iterate<const FUSED: bool>(
+        &mut self,
+        start: &State<S>,
+        guess: &GaussGuess<'_, S>,
+    ) -> Result<GaussEnd<S>, NotConverged> {
+        let n = S::N_COORDINATES;
+        let times = self.tables.nodes + Lanes::splat(start.t);
+        let h = self.tables.weights.sum().abs();
+        let mut velocities = self.first::<FUSED>(start, guess);
+        let mut q = self.positions::<FUSED>(start, &velocities);
+        let mut progress = Progress::default();
+        let mut passes = 0;
+        loop {
+            let (mut gradient, hessian) = S::lagrangian_derivatives(&self.constants, times, &q, &velocities);
+            self.add_forces(start, times, &q, &velocities, &mut gradient.force);
+            let mut inertia: Nodes<S> = Array::filled(Lanes::ZERO);
+            self.mass.clear();
+            for entry in S::STRUCTURE.hessian.vv {
+                let value = entry.value(self.constants.as_ref(), hessian.as_ref());
+                self.mass.set(entry.row, entry.col, value);
+                if entry.row == entry.col {
+                    inertia[entry.row] = value;
+                }
+            }
+            self.mass.factor::<FUSED>();
+            let mut correction: Nodes<S> = Array::filled(Lanes::ZERO);
+            for i in 0..n {
+                let p = product::<K, FUSED>(&self.tables.stages, gradient.force[i], Lanes::splat(start.p[i]));
+                correction[i] = p - gradient.momentum[i];
+            }
+            self.mass.solve::<FUSED>(&mut correction);
+            // Squares of lengths in the metric of the mass matrix: what the nodes move by, where they are, and how fast they are.
+            let (mut moves, mut here, mut speed) = (Lanes::ZERO, Lanes::ZERO, Lanes::ZERO);
+            for i in 0..n {
+                let inertia = Scalar::abs(inertia[i]);
+                velocities[i] = velocities[i] + correction[i];
+                moves = (inertia * correction[i]).times_plus::<FUSED>(correction[i], moves);
+                here = (inertia * q[i]).times_plus::<FUSED>(q[i], here);
+                speed = (inertia * velocities[i]).times_plus::<FUSED>(velocities[i], speed);
+            }
+            q = self.positions::<FUSED>(start, &velocities);
+            passes += 1;
+            let moved = h * Scalar::sqrt(moves.largest());
+            let reach = reach(Scalar::sqrt(here.largest()), h * Scalar::sqrt(speed.largest()));
+            if progress.has_converged(if moved == 0.0 { 0.0 } else { moved / reach })? {
+                break;
+            }
+        }
+        let mut forces = S::lagrangian_gradient(&self.constants, times, &q, &velocities).force;
+        self.add_forces(start, times, &q, &velocities, &mut forces);
+        let (mut difference, mut gain) =
+            (S::PerCoordinate::<f64>::filled(0.0), S::PerCoordinate::<f64>::filled(0.0));
+        let mut sum = 0.0;
+        for i in 0..n {
+            difference[i] = (self.tables.weights * velocities[i]).sum();
+            gain[i] = (self.tables.weights * forces[i]).sum();
+            sum += difference[i] + gain[i];
+        }
+        self.velocities = velocities;
+        // Comparisons lose a NaN on the way; in the sums over all nodes it arrives.
+        if !f64::is_finite(sum) {
+            return Err(NotConverged { corrections: passes, last_correction: f64::NAN });
+        }
+        Ok(GaussEnd { difference, gain, passes })
+    }
+
+    /// `Qᵢ`.
+    #[inline(always)]
+    fn positions<const FUSED: bool>(&self, start: &State<S>, velocities: &Nodes<S>) -> Nodes<S> {
+        let mut q: Nodes<S> = Array::filled(Lanes::ZERO);
+        for i in 0..S::N_COORDINATES {
+            let way = product::<K, FUSED>(&self.tables.stages, velocities[i], Lanes::ZERO);
+            q[i] = Lanes::splat(start.q[i]) + way;
+        }
+        q
+    }
+
+    /// Adds `f` to `∂L/∂q`.
+    #[inline(always)]
+    fn add_forces(&self, start: &State<S>, times: Lanes, q: &Nodes<S>, v: &Nodes<S>, force: &mut Nodes<S>) {
+        if S::STRUCTURE.forces.exist() {
+            let mut inputs: S::PerInput<Lanes> = Array::filled(Lanes::ZERO);
+            for i in 0..S::N_INPUTS {
+                inputs[i] = Lanes::splat(start.inputs[i]);
+            }
+            let added = S::forces(&self.constants, times, q, v, &inputs);
+            for &i in S::STRUCTURE.forces.forced {
+                force[i] = force[i] + added[i];
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn first<const FUSED: bool>(&self, start: &State<S>, guess: &GaussGuess<'_, S>) -> Nodes<S> {
+        let mut velocities: Nodes<S> = Array::filled(Lanes::ZERO);
+        for i in 0..S::N_COORDINATES {
+            velocities[i] = match guess {
+                GaussGuess::Continued([last, before]) => {
+                    let [of_last, of_before] = &self.tables.prediction;
+                    let older = product::<K, FUSED>(of_before, before[i], Lanes::ZERO);
+                    product::<K, FUSED>(of_last, last[i], older)
+                }
+                GaussGuess::Constant(acceleration) => {
+                    let change = self.tables.nodes * Lanes::splat(acceleration[i]);
+                    Lanes::splat(start.v[i]) + change
+                }
+            };
+        }
+        velocities
+    }
+}

@@ -1,0 +1,96 @@
+//! Which vector instructions code over [`Lanes`](super::Lanes) is compiled for, chosen when the program runs.
+//!
+//! A [`LaneOperation`] is compiled once per instruction set, with everything in it that is inlined, and [`InstructionSet::run`] calls the copy for
+//! the machine. What is not inlined there is code for the instruction set that the whole program is compiled for.
+
+use core::fmt;
+
+/// A set of vector instructions that this machine has.
+///
+/// With the feature `dispatch` it is found when the program runs; without it, it is what the program is compiled for
+/// (`RUSTFLAGS="-C target-cpu=native"`).
+#[derive(Clone, Copy, Debug)]
+pub struct InstructionSet(Level);
+
+#[derive(Clone, Copy, Debug)]
+enum Level {
+    /// What the whole program is compiled for.
+    Compiled,
+    /// AVX2 with fused products, found at run time: x86-64-v3.
+    #[cfg(all(feature = "dispatch", target_arch = "x86_64"))]
+    Avx2(pulp::x86::V3),
+}
+
+/// Work on lanes.
+pub(crate) trait LaneOperation {
+    type Output;
+
+    /// Does it; `FUSED` says that the machine has an instruction for products with a sum. Implementations are `#[inline(always)]`, as is what they call.
+    fn run<const FUSED: bool>(self) -> Self::Output;
+}
+
+impl InstructionSet {
+    /// Whether code for the whole program may contain fused products.
+    const COMPILED_FUSED: bool = cfg!(any(target_feature = "fma", target_arch = "aarch64"));
+
+    /// The best one that lanes have code for.
+    pub fn detect() -> Self {
+        #[cfg(all(feature = "dispatch", target_arch = "x86_64"))]
+        if let (false, Some(avx2)) = (Self::COMPILED_FUSED, pulp::x86::V3::try_new()) {
+            return Self(Level::Avx2(avx2));
+        }
+        Self(Level::Compiled)
+    }
+
+    /// Its name, for reports.
+    pub const fn name(&self) -> &'static str {
+        match self.0 {
+            #[cfg(all(feature = "dispatch", target_arch = "x86_64"))]
+            Level::Avx2(_) => "AVX2 + FMA, found at run time",
+            Level::Compiled if cfg!(target_feature = "avx512f") => "AVX-512",
+            Level::Compiled if cfg!(all(target_feature = "avx2", target_feature = "fma")) => "AVX2 + FMA",
+            Level::Compiled if cfg!(target_arch = "x86_64") => "SSE2",
+            Level::Compiled if cfg!(target_arch = "aarch64") => "NEON",
+            Level::Compiled => "portable",
+        }
+    }
+
+    /// Numbers that one register holds.
+    pub const fn vector_width(&self) -> usize {
+        match self.0 {
+            #[cfg(all(feature = "dispatch", target_arch = "x86_64"))]
+            Level::Avx2(_) => 4,
+            Level::Compiled if cfg!(target_feature = "avx512f") => 8,
+            Level::Compiled if cfg!(target_feature = "avx") => 4,
+            Level::Compiled if cfg!(any(target_arch = "x86_64", target_arch = "aarch64")) => 2,
+            Level::Compiled => 1,
+        }
+    }
+
+    /// Runs `operation` in code for this instruction set.
+    #[inline(always)]
+    pub(crate) fn run<O: LaneOperation>(self, operation: O) -> O::Output {
+        match self.0 {
+            #[cfg(all(feature = "dispatch", target_arch = "x86_64"))]
+            Level::Avx2(avx2) => {
+                struct Fused<O>(O);
+                impl<O: LaneOperation> pulp::NullaryFnOnce for Fused<O> {
+                    type Output = O::Output;
+                    #[inline(always)]
+                    fn call(self) -> O::Output {
+                        self.0.run::<true>()
+                    }
+                }
+                avx2.vectorize(Fused(operation))
+            }
+            Level::Compiled if Self::COMPILED_FUSED => operation.run::<true>(),
+            Level::Compiled => operation.run::<false>(),
+        }
+    }
+}
+
+impl fmt::Display for InstructionSet {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{}, {} numbers wide", self.name(), self.vector_width())
+    }
+}
