@@ -1,0 +1,196 @@
+//! Random parameters, states, step sizes and schemes, among them what is zero, huge, tiny or no number: a step is taken as its
+//! equations say, or refused with an error that leaves the state as it was.
+//!
+//! Many cases: `EVI_FUZZ_CASES=100000 cargo test --release -p evi-tests --test fuzz -- --nocapture`, with `EVI_FUZZ_SEED=N` from case
+//! `N` on. A failure names its case, made as small as it goes.
+
+mod numbers;
+#[path = "../random_choices/mod.rs"]
+mod random_choices;
+mod scenes;
+
+use std::fmt::Debug;
+
+use evi_core::array::Array;
+use evi_core::baseline::{GeneralizedAlpha, ImplicitMidpoint, Rattle, Rk4, Shake};
+use evi_core::mechanics::Mechanics;
+use evi_core::prelude::*;
+use numbers::{number, step_size};
+use random_choices::{Choices, check};
+use scenes::Random;
+
+const STACK: usize = 2 * 1024 * 1024;
+
+/// What became of a case.
+#[derive(Clone, Copy, Debug, Default)]
+struct Outcome {
+    /// Whether it began at all.
+    is_started: bool,
+    accepted: usize,
+    refused: usize,
+    /// The largest residuals of accepted states, in units of the round-off of their terms.
+    constraints: f64,
+    hidden_constraints: f64,
+}
+
+impl Outcome {
+    fn or(self, other: Self) -> Self {
+        Self {
+            is_started: self.is_started || other.is_started,
+            accepted: self.accepted + other.accepted,
+            refused: self.refused + other.refused,
+            constraints: self.constraints.max(other.constraints),
+            hidden_constraints: self.hidden_constraints.max(other.hidden_constraints),
+        }
+    }
+}
+
+/// What a scheme promises of the states that it reaches.
+#[derive(Clone, Copy, PartialEq)]
+enum Keeps {
+    /// Positions and velocities on the constraints.
+    Both,
+    /// Positions alone.
+    Positions,
+    /// Finite numbers.
+    Nothing,
+}
+
+fn case<S: Random>(choices: &mut Choices) -> Result<Outcome, String> {
+    let system = S::random(choices);
+    let h = step_size(choices);
+    let evi = Evi::midpoint(h);
+    match choices.below(10) {
+        0 => steps(system, evi, Keeps::Both, choices),
+        1 => steps(system, Evi::simpson(h).frequency(number(choices)), Keeps::Both, choices),
+        2 => steps(system, Evi::trapezoid(h), Keeps::Both, choices),
+        3 => steps(system, evi.composed(Composition::suzuki_4()), Keeps::Both, choices),
+        4 => steps(system, evi.compensated(), Keeps::Both, choices),
+        5 => steps(system, Rattle::new(h), Keeps::Both, choices),
+        6 => steps(system, Rk4::new(h), Keeps::Nothing, choices),
+        7 => steps(system, Shake::new(h), Keeps::Positions, choices),
+        8 => steps(system, GeneralizedAlpha::new(h), Keeps::Positions, choices),
+        _ => steps(system, ImplicitMidpoint::new(h), Keeps::Nothing, choices),
+    }
+}
+
+/// A few steps from a random start.
+fn steps<S: Random, F: Scheme<S> + Debug>(
+    system: S,
+    scheme: F,
+    keeps: Keeps,
+    choices: &mut Choices,
+) -> Result<Outcome, String> {
+    let description = format!("{system:?} by {scheme:?}");
+    steps_described(system, scheme, keeps, choices).map_err(|error| format!("{description}: {error}"))
+}
+
+fn steps_described<S: Random, F: Scheme<S>>(
+    system: S,
+    scheme: F,
+    keeps: Keeps,
+    choices: &mut Choices,
+) -> Result<Outcome, String> {
+    let mut outcome = Outcome::default();
+    let t = if choices.once_in(8) { number(choices) } else { 0.0 };
+    let q = S::PerCoordinate::<f64>::from_fn(|_| number(choices));
+    let v = S::PerCoordinate::<f64>::from_fn(|_| number(choices));
+    // Round-off of a velocity is relative to the largest that it has come from.
+    let mut speed = largest(v.as_ref());
+    let Ok(mut run) = Simulation::new(system, scheme).start_projected(t, q, v) else { return Ok(outcome) };
+    outcome.is_started = true;
+    outcome = outcome.or(looked_at(run.mechanics(), run.state(), speed, Keeps::Both)?);
+    for _ in 0..=choices.below(4) {
+        run.inputs_mut().as_mut().iter_mut().for_each(|input| *input = number(choices));
+        let before = run.state().clone();
+        speed = speed.max(largest(before.v().as_ref()));
+        match run.advance().err() {
+            None => {
+                outcome.accepted += 1;
+                outcome = outcome.or(looked_at(run.mechanics(), run.state(), speed, keeps)?);
+            }
+            Some(_) if bits(&before) == bits(run.state()) => outcome.refused += 1,
+            Some(error) => return Err(format!("`{error}` has changed the state {before:?}")),
+        }
+    }
+    Ok(outcome)
+}
+
+/// The largest absolute value; NaN if one is.
+fn largest(values: &[f64]) -> f64 {
+    values.iter().map(|x| x.abs()).fold(0.0, |largest, x| if x <= largest { largest } else { x })
+}
+
+fn bits<S: MechanicalSystem>(state: &State<S>) -> Vec<u64> {
+    let numbers = [state.q().as_ref(), state.v().as_ref(), state.p().as_ref(), &[state.t()]].concat();
+    numbers.into_iter().map(f64::to_bits).collect()
+}
+
+/// Looks at an accepted state: its numbers are finite, and it satisfies what the scheme promises.
+fn looked_at<S: MechanicalSystem>(
+    mechanics: &Mechanics<S>,
+    state: &State<S>,
+    speed: f64,
+    keeps: Keeps,
+) -> Result<Outcome, String> {
+    let numbers = [state.q().as_ref(), state.v().as_ref(), state.p().as_ref(), &[state.t()]].concat();
+    if !numbers.iter().all(|number| number.is_finite()) {
+        return Err(format!("accepts {state:?}"));
+    }
+    let mut outcome = Outcome::default();
+    if keeps != Keeps::Nothing {
+        outcome.constraints = constraint_error(mechanics, state);
+    }
+    if keeps == Keeps::Both {
+        let of_speed = (largest(state.v().as_ref()) / speed).min(1.0);
+        let residuals = mechanics.hidden_constraint_residual(state);
+        outcome.hidden_constraints = largest(residuals.as_ref()) * of_speed / f64::EPSILON;
+    }
+    let are_kept = outcome.constraints <= ROUND_OFFS && outcome.hidden_constraints <= ROUND_OFFS;
+    if are_kept { Ok(outcome) } else { Err(format!("{outcome:?} at {state:?}")) }
+}
+
+/// What the equations of an accepted state may be off by, in units of the round-off of their terms.
+const ROUND_OFFS: f64 = 1e3;
+
+/// Residuals of the constraints against what a displacement by the round-off of the configuration makes of them, by differences
+/// of the constraints themselves.
+fn constraint_error<S: MechanicalSystem>(mechanics: &Mechanics<S>, state: &State<S>) -> f64 {
+    let residuals = mechanics.constraint_residual(state);
+    let size = largest(state.q().as_ref());
+    // A thousand roundings of the largest coordinate, in every direction.
+    let displacement = 1e3 * f64::EPSILON * size;
+    let mut allowed = vec![0.0_f64; S::N_CONSTRAINTS];
+    for i in 0..S::N_COORDINATES {
+        for sign in [-1.0, 1.0] {
+            let mut q = state.q().clone();
+            q[i] += sign * displacement;
+            let moved = mechanics.constraint_residual_at(state.t(), &q);
+            for c in 0..S::N_CONSTRAINTS {
+                allowed[c] = allowed[c].max((moved[c] - residuals[c]).abs());
+            }
+        }
+    }
+    // In units of one rounding.
+    let ratio = |c: usize| if residuals[c] == 0.0 { 0.0 } else { 1e3 * residuals[c].abs() / allowed[c] };
+    largest(&(0..S::N_CONSTRAINTS).map(ratio).collect::<Vec<_>>())
+}
+
+/// Runs the cases of a scene, and prints what became of them.
+fn steps_are_taken_as_their_equations_say_or_refused<S: Random>() {
+    let outcomes = check(800, STACK, case::<S>);
+    let started = outcomes.iter().filter(|outcome| outcome.is_started).count();
+    let all = outcomes.iter().copied().fold(Outcome::default(), Outcome::or);
+    println!(
+        "{}: {} cases, {started} started, {} steps accepted, {} refused; residuals in round-offs: constraints {:.1}, \
+         hidden constraints {:.1}",
+        std::any::type_name::<S>(),
+        outcomes.len(),
+        all.accepted,
+        all.refused,
+        all.constraints,
+        all.hidden_constraints
+    );
+    assert!(all.accepted > outcomes.len() / 10, "too few steps are accepted");
+    assert!(all.refused > 0, "no step is refused");
+}
