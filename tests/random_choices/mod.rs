@@ -1,11 +1,8 @@
 //! Random cases that shrink: what a generator chooses is a tape of numbers, and a shorter tape is a simpler case.
 //!
 //! In: a property that makes its own case out of [`Choices`]. Out: nothing, or a panic with the smallest case that was found to
-//! fail and the seed of the first (after D. MacIver, A. Donaldson, *Test-case reduction via test-case generation*, ECOOP
+//! fail and the seed of the first. Whoever includes it has `random_expressions/splitmix.rs` beside it (after D. MacIver, A. Donaldson, *Test-case reduction via test-case generation*, ECOOP
 //! 2020). A seed names the same case everywhere.
-
-#[path = "../random_expressions/splitmix.rs"]
-mod splitmix;
 
 use std::any::Any;
 use std::fmt::Display;
@@ -14,7 +11,7 @@ use std::panic::resume_unwind;
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
 
-use splitmix::SplitMix;
+use super::splitmix::SplitMix;
 
 /// What a case may take at most before it counts as a hang: 10,000 times the longest that was seen.
 const HANG: Duration = Duration::from_secs(120);

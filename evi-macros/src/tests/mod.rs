@@ -23,3 +23,5 @@ mod random_expressions;
 
 #[path = "../../../tests/random_choices/mod.rs"]
 mod random_choices;
+
+use random_expressions::splitmix;
