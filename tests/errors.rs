@@ -530,6 +530,23 @@ fn a_singular_matrix_is_reported_with_its_pivots() {
     assert!(error.pivot_ratio.is_nan());
 }
 
+/// Steps back do not lead ahead: that takes the other sign, and nothing happens until then.
+#[test]
+fn a_time_on_the_other_side_is_refused_with_the_sign_that_leads_there() {
+    for (h, target) in [(-0.01, 1.0), (0.01, -1.0)] {
+        let mut run = Simulation::new(OSCILLATOR, Evi::midpoint(h)).start([1.0], [0.0]).expect("consistent");
+        let error = run.advance_to(target).map(|_| ()).expect_err("the other side");
+        check_text(&error, &["is not ahead", &format!("h = {h}: with h = {}", -h)]);
+        assert!(matches!(error, StepError::OppositeTime { t: 0.0, .. }), "{error:?}");
+        assert_eq!(run.integrate(target).expect_err("the other side").error, error);
+        assert_eq!(run.steps(), 0);
+        // Where it is, within a step, is near enough.
+        assert!(run.advance_to(-0.9 * h).is_ok());
+        assert!(run.advance_to(-target).is_ok());
+        assert_eq!(run.steps(), 100);
+    }
+}
+
 #[test]
 fn a_time_that_no_number_of_steps_reaches_is_refused() {
     let mut run = Simulation::new(OSCILLATOR, Evi::midpoint(0.01)).start([1.0], [0.0]).expect("consistent");
@@ -542,4 +559,13 @@ fn a_time_that_no_number_of_steps_reaches_is_refused() {
         assert_eq!(interrupted.trajectory.states(), std::slice::from_ref(&before));
     }
     assert_eq!((run.state(), run.steps()), (&before, 0));
+}
+
+/// A mass and a stiffness whose velocity overflows at the start.
+#[test]
+fn a_start_that_overflows_is_refused() {
+    let tiny = HarmonicOscillator { m: 5e-324, k: 1.0 };
+    let error =
+        Simulation::new(tiny, Evi::midpoint(0.1)).start([1.0], [-2.0]).map(|_| ()).expect_err("overflows");
+    check_text(&error, &["velocity 0", "not finite"]);
 }

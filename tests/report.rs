@@ -6,7 +6,8 @@ use evi_core::system::{
     Structure, SystemReport,
 };
 use evi_examples::{
-    DoublePendulum, DrivenPendulum, HarmonicOscillator, Pendulum, SphericalPendulum, StiffSpringPendulum,
+    DoublePendulum, DrivenPendulum, HarmonicOscillator, Pendulum, SliderCrank, SphericalPendulum,
+    StiffSpringPendulum,
 };
 use evi_tests::scenes::{
     ChargedParticle, ChargedSphericalPendulum, DampedOscillator, DampedPendulum, DoublePendulumInAngles,

@@ -181,9 +181,13 @@ fn time_is_the_start_plus_a_number_of_steps() {
 #[test]
 fn a_run_goes_to_the_step_nearest_to_a_time() {
     let mut run = midpoint_run();
-    for (t, steps) in [(0.996, 100), (1.004, 100), (1.0, 100), (0.5, 100), (-3.0, 100), (1.006, 101)] {
+    for (t, steps) in [(0.996, 100), (1.004, 100), (1.0, 100), (0.992, 100), (1.006, 101)] {
         run.advance_to(t).unwrap();
         assert_eq!(run.steps(), steps, "to {t}");
+    }
+    for t in [0.5, -3.0] {
+        assert!(run.advance_to(t).is_err(), "{t} is behind");
+        assert_eq!(run.steps(), 101);
     }
 }
 
@@ -191,7 +195,7 @@ fn a_run_goes_to_the_step_nearest_to_a_time() {
 fn a_run_with_negative_steps_goes_back_in_time() {
     let Start { q, v } = moving();
     let mut run = Simulation::new(UNEQUAL, Evi::midpoint(-0.01)).start_at(2.0, q, v).unwrap();
-    run.advance_to(2.5).unwrap();
+    assert!(run.advance_to(2.5).is_err(), "ahead");
     assert_eq!(run.steps(), 0);
     run.advance_to(1.0).unwrap();
     assert_eq!((run.steps(), run.state().t()), (100, 1.0));
@@ -239,7 +243,7 @@ fn a_recording_keeps_every_state() {
     let next = run.integrate(0.1).unwrap();
     assert_eq!((&next.states()[0], next.states().len()), (trajectory.last(), 11));
     assert_eq!(run.integrate(0.0).unwrap().states().len(), 1);
-    assert_eq!(run.integrate(-1.0).unwrap().states().len(), 1);
+    assert_eq!(run.integrate(-1.0).unwrap_err().trajectory.states().len(), 1);
 }
 
 // The two-step view.

@@ -41,7 +41,14 @@ fn directional(
                 chain(graph, tangents.get(&x).copied(), slope)
             }
             Node::Power(base, exponent) => chain(graph, tangents.get(&base).copied(), |graph| {
-                let power = graph.power(base, exponent - 1);
+                let power = match exponent.checked_sub(1) {
+                    Some(lower) => graph.power(base, lower),
+                    // The derivative of the lowest power that is written.
+                    None => {
+                        let power = graph.power(base, exponent);
+                        graph.div(power, base)
+                    }
+                };
                 let factor = graph.number(f64::from(exponent));
                 Some(graph.mul(factor, power))
             }),

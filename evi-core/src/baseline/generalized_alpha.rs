@@ -6,7 +6,7 @@ use crate::array::Array;
 use crate::integrator::{IterationFailure, OneStep, Scheme, StepError, Tally};
 use crate::linear::{SingularMatrix, constraint_index, largest_magnitude, unknowns};
 use crate::mechanics::{Acceleration, Mechanics, State};
-use crate::newton::{self, Converged, SLOWEST_CHORD};
+use crate::newton::{self, Converged, NotConverged, SLOWEST_CHORD};
 use crate::scheme::{SchemeError, checked_step_size};
 use crate::system::MechanicalSystem;
 
@@ -272,14 +272,30 @@ impl<S: MechanicalSystem> GeneralizedAlphaStep<S> {
             previous = length;
             Ok(length)
         });
-        match iteration {
-            Ok(Converged { corrections }) => {
+        let found = iteration.and_then(|Converged { corrections }| {
+            let end = end(solution);
+            if self.is_on_constraints(state, &end) {
                 tally.count_corrections(corrections);
-                Ok(end(solution))
+                Ok(end)
+            } else {
+                Err(NotConverged { corrections, last_correction: previous }.into())
             }
-            Err(failure) => {
-                Err(IterationFailure::at(failure, state.t, constraint_residual, smallest_pivot_ratio))
-            }
-        }
+        });
+        found.map_err(|failure: IterationFailure| {
+            failure.at(state.t, constraint_residual, smallest_pivot_ratio)
+        })
+    }
+
+    /// Whether a step ends on its constraints, which hold to the round-off of what is added up to `q₁`. Where next to nothing is left
+    /// of it, or the iteration has ended at no solution, they do not.
+    fn is_on_constraints(&self, state: &State<S>, end: &End<S>) -> bool {
+        /// Of the 16 digits of the terms seven may be lost.
+        const LARGEST_RESIDUAL: f64 = 1e-9;
+        let constants = &self.mechanics().constants;
+        let (residual, jacobian) = S::constraint_derivatives(constants, state.t + self.h, &end.q);
+        let reach = Array::from_fn(|i| state.q[i].abs() + end.q[i].abs());
+        let scale = self.mechanics().constraint_scale(&jacobian, &reach);
+        // Written so that a NaN is refused.
+        (0..S::N_CONSTRAINTS).all(|c| residual[c].abs() <= LARGEST_RESIDUAL * scale[c])
     }
 }

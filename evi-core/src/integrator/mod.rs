@@ -130,6 +130,16 @@ pub enum StepError {
         /// Step size.
         h: f64,
     },
+    /// The time to move to lies on the other side of where steps of this sign lead.
+    #[error("t = {target} is not ahead of t = {t} in steps of h = {h}: with h = {} it is", -.h)]
+    OppositeTime {
+        /// The time reached.
+        t: f64,
+        /// The time to move to.
+        target: f64,
+        /// Step size.
+        h: f64,
+    },
     /// The end of the step is not finite.
     #[error("the state at t = {t} is not finite")]
     NotFinite {

@@ -9,16 +9,23 @@ use crate::mechanics::{Mechanics, State};
 use crate::newton::Fallbacks;
 use crate::system::MechanicalSystem;
 
-/// Number of whole steps of size `h` nearest to the span from `t` to `target`; 0 if `target` lies on the other side.
+/// Number of whole steps of size `h` nearest to the span from `t` to `target`.
+///
+/// # Errors
+/// [`StepError::OppositeTime`] if `target` lies a step or more on the other side, [`StepError::UnreachableTime`] if no number of
+/// steps leads there.
 pub(crate) fn steps_between(t: f64, target: f64, h: f64) -> Result<u64, StepError> {
     /// Up to here every whole number is a float.
     const MOST_STEPS: f64 = (1_u64 << f64::MANTISSA_DIGITS) as f64;
     let steps = (target - t) / h;
-    if steps.abs() < MOST_STEPS {
-        // The cast saturates: negative numbers become 0.
-        Ok((steps + 0.5) as u64)
-    } else {
+    let is_reachable = steps.abs() < MOST_STEPS;
+    if !is_reachable {
         Err(StepError::UnreachableTime { target, h })
+    } else if steps <= -1.0 {
+        Err(StepError::OppositeTime { t, target, h })
+    } else {
+        // The cast saturates: what is behind by less than a step is 0.
+        Ok((steps + 0.5) as u64)
     }
 }
 
@@ -149,7 +156,8 @@ impl<S: MechanicalSystem, M: OneStep<S>, T: Tally> Run<S, M, T> {
     /// Takes steps until the next one would end beyond `t` by more than half a step.
     ///
     /// # Errors
-    /// [`StepError`] of the first step that fails; the run stands before it. [`StepError::UnreachableTime`] before any step.
+    /// [`StepError`] of the first step that fails; the run stands before it. [`StepError::UnreachableTime`] and
+    /// [`StepError::OppositeTime`] before any step.
     pub fn advance_to(&mut self, t: f64) -> Result<&State<S>, StepError> {
         for _ in 0..self.steps_to(t)? {
             self.advance()?;
@@ -181,7 +189,7 @@ impl<S: MechanicalSystem, M: OneStep<S>, T: Tally> Run<S, M, T> {
         Ok(trajectory)
     }
 
-    /// Number of whole steps nearest to the span from here to `t`; 0 if `t` lies on the other side.
+    /// Number of whole steps nearest to the span from here to `t`.
     fn steps_to(&self, t: f64) -> Result<u64, StepError> {
         steps_between(self.state.t, t, self.map.h())
     }

@@ -59,10 +59,10 @@ pub enum StartError {
     /// The scheme defines no step.
     #[error(transparent)]
     Scheme(#[from] SchemeError),
-    /// A number of the start, or the energy there, is not finite.
+    /// A number of the start, or the energy or the momentum there, is not finite.
     #[error("{quantity} {index} of the start is not finite: {value}")]
     NotFinite {
-        /// `position` or `velocity`; `time` or `energy` (then `index` is 0).
+        /// `position`, `velocity` or `momentum`; `time` or `energy` (then `index` is 0).
         quantity: &'static str,
         /// Index in its vector.
         index: usize,
@@ -184,6 +184,12 @@ fn project_velocity<S: MechanicalSystem>(
     v: S::PerCoordinate<f64>,
 ) -> Result<State<S>, StartError> {
     let projected = mechanics.project_velocity(t, &q, v)?;
+    // Finite numbers overflow where a mass or a gradient is out of all proportion.
+    refuse_what_is_not_finite(&[
+        ("position", q.as_ref()),
+        ("velocity", projected.v.as_ref()),
+        ("momentum", projected.p.as_ref()),
+    ])?;
     Ok(State { t, q, v: projected.v, p: projected.p, inputs: Array::from_fn(|_| 0.0) })
 }
 
@@ -195,9 +201,16 @@ fn check_finite<S: MechanicalSystem>(
 ) -> Result<(), StartError> {
     let time = [t];
     let energy = [mechanics.energy_at(t, q, v)];
-    let numbers: [(&'static str, &[f64]); 4] =
-        [("time", &time), ("position", q.as_ref()), ("velocity", v.as_ref()), ("energy", &energy)];
-    for (quantity, values) in numbers {
+    refuse_what_is_not_finite(&[
+        ("time", &time),
+        ("position", q.as_ref()),
+        ("velocity", v.as_ref()),
+        ("energy", &energy),
+    ])
+}
+
+fn refuse_what_is_not_finite(numbers: &[(&'static str, &[f64])]) -> Result<(), StartError> {
+    for &(quantity, values) in numbers {
         if let Some(index) = values.iter().position(|value| !value.is_finite()) {
             return Err(StartError::NotFinite { quantity, index, value: values[index] });
         }

@@ -49,8 +49,8 @@ pub use scene_frequencies::{SceneFrequencies, SceneTable};
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SchemeError {
-    /// The step size is zero or not a number.
-    #[error("the step size must be finite and not zero, got {h}")]
+    /// The step size is zero or not a number, or its square is.
+    #[error("the step size must be finite and not zero, and its square too, got {h}")]
     StepSize {
         /// The step size.
         h: f64,
@@ -277,7 +277,8 @@ impl<const K: usize> Quadrature<K> {
     }
 }
 
-/// Returns the step size if it defines a step.
+/// Returns the step size if it defines a step. Forces enter with its square, which a normal number has to be; a sum of such steps
+/// never overflows.
 pub(crate) fn checked_step_size(h: f64) -> Result<f64, SchemeError> {
-    if h.is_finite() && h != 0.0 { Ok(h) } else { Err(SchemeError::StepSize { h }) }
+    if (h * h).is_normal() { Ok(h) } else { Err(SchemeError::StepSize { h }) }
 }

@@ -4,6 +4,7 @@ use num_dual::HyperDual64;
 
 use super::workbench::{Point, VARIABLES, agree, expression, random_expressions};
 use crate::differentiate::{partial, rate};
+use crate::expr::evaluate::evaluate;
 use crate::expr::{ExprId, Graph, Symbol};
 
 /// Compares the value, all first and all second derivatives of a root at a point; their largest absolute
@@ -176,4 +177,23 @@ fn second_rate_is_the_curvature() {
     check("x * y");
     check("x * x + y * y - (a * t).sin()");
     check("(x * t).sin() * y");
+}
+
+/// `n − 1` is no 32-bit integer in the second derivative.
+#[test]
+fn the_lowest_power_that_can_be_written() {
+    let mut graph = Graph::default();
+    let root = expression(&mut graph, "x.powi(-2147483647)");
+    let exponent = -2_147_483_647.0;
+    let (mut derivative, mut expected) = (root, 1.0);
+    for k in 0..3 {
+        derivative = partial(&mut graph, derivative, Symbol::Coordinate(0)).expect("a derivative");
+        expected *= exponent - f64::from(k);
+        // At x = 1.
+        let value: f64 = evaluate(&graph, &[derivative], |_| 1.0)[0];
+        assert!(
+            (value - expected).abs() <= 4.0 * f64::EPSILON * expected.abs(),
+            "{value} instead of {expected}"
+        );
+    }
 }

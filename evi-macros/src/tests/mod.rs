@@ -6,6 +6,7 @@
 
 mod differentiation;
 mod emission;
+mod fuzz;
 mod graph;
 mod long_expressions;
 mod mistakes;
@@ -19,3 +20,8 @@ mod workbench;
 
 #[path = "../../../tests/random_expressions/mod.rs"]
 mod random_expressions;
+
+#[path = "../../../tests/random_choices/mod.rs"]
+mod random_choices;
+
+use random_expressions::splitmix;
