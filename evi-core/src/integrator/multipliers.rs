@@ -1,8 +1,8 @@
 //! A kick, a drift and a kick with constraints: Newton's iteration on the multipliers alone.
 //!
 //! In: a [`KickDriftKick`], whose end point is affine in the impulse `ℓ = Λ/h` of the constraint force. Out: the `ℓ` for which
-//! `φ(q₁(ℓ)) = 0`, and the state there. From the impulse that the previous steps predict, two corrections with one matrix
-//! `G₁ D G₀ᵀ` do, as a rule; where they do not, Newton's iteration goes on with a fresh matrix for each.
+//! `φ(q₁(ℓ)) = 0`, and the state there. From the impulse that the previous steps predict, one or two corrections with one
+//! matrix `G₁ D G₀ᵀ` do, as a rule; where they do not, Newton's iteration goes on with a fresh matrix for each.
 
 use core::borrow::Borrow;
 
