@@ -11,7 +11,8 @@ const STEPS: u32 = 1600;
 /// Largest distances from the end in positions and velocities, relative to the largest on the way, of the composed member and of the
 /// Galerkin member: measured, rounded up to a round number. Most are round-off, with the sensitivity of the motion; the error of the steps
 /// is seen where they are long for the motion, on stiff springs (a third of an oscillation), the top (an eighth of a radian) and the
-/// double pendulum. A Galerkin step solves one dense system for all points, 240 unknowns for the long chain, which is left out.
+/// double pendulum. A Galerkin step by Newton's iteration, which compensation serves best, solves one dense system for all points, 240 unknowns for the
+/// long chain, which is left out.
 const BOUNDS: [(&str, f64, Option<f64>); 19] = [
     ("andrews_squeezer", 2e-15, Some(5e-16)),
     ("car_axis", 5e-14, Some(2e-15)),
@@ -22,13 +23,13 @@ const BOUNDS: [(&str, f64, Option<f64>); 19] = [
     ("driven_pendulum", 2e-15, Some(5e-16)),
     ("fermi_pasta_ulam", 5e-8, Some(5e-10)),
     ("four_bar", 5e-14, Some(5e-14)),
-    ("harmonic_oscillator", 1e-15, Some(5e-15)),
+    ("harmonic_oscillator", 5e-15, Some(5e-15)),
     ("heavy_top", 5e-10, Some(1e-12)),
     ("henon_heiles", 5e-14, Some(1e-14)),
     ("kapitza_pendulum", 5e-16, Some(5e-16)),
     ("kepler", 5e-13, Some(5e-14)),
     ("pendulum", 2e-14, Some(5e-15)),
-    ("pendulum_cartesian", 2e-14, Some(2e-14)),
+    ("pendulum_cartesian", 5e-14, Some(2e-14)),
     ("slider_crank", 1e-15, Some(5e-16)),
     ("spherical_pendulum", 1e-14, Some(1e-14)),
     ("stiff_spring_pendulum", 5e-15, Some(1e-15)),
@@ -103,15 +104,15 @@ impl Visitor for Runs {
         let composition = Evi::midpoint(h).composed(Composition::kahan_li_8()).compensated();
         check::<S, _>("composed", composition, *composed);
         if let Some(galerkin) = galerkin {
-            check::<S, _>("Galerkin", Galerkin::<4>::new(h).compensated(), *galerkin);
+            check::<S, _>("Galerkin", Galerkin::<4>::new(h).by_newton().compensated(), *galerkin);
         }
     }
 }
 
 #[test]
 fn and_invariants_of_every_scene() {
-    /// The prepared maps of a composition take 1.6 MB for the long chain; a test has 2 MB of stack otherwise.
-    const STACK: usize = 1 << 24;
+    /// The prepared maps of a composition take 1.6 MB for the long chain, and are moved; a test has 2 MB of stack otherwise.
+    const STACK: usize = 1 << 27;
     let runs = std::thread::Builder::new().stack_size(STACK).spawn(|| visit_all(&mut Runs));
     runs.expect("a thread").join().expect("every scene as the gallery says");
 }
