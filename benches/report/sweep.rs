@@ -191,7 +191,7 @@ impl Work<'_> {
     fn sweep(&self, method: usize) -> Vec<Row> {
         let Thoroughness { effort, refinement, longest_sweep, .. } = self.thoroughness;
         // Most methods end early: one that does not may take more than its part.
-        let allowed = (4 * self.left).min(longest_sweep);
+        let allowed = (2 * self.left).min(longest_sweep);
         let (scene, facts) = (self.scene.facts(), self.scene.methods()[method]);
         if facts.path == Path::Program && self.thoroughness.peers {
             return self.sweep_of_program(&scene, &facts);
