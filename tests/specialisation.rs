@@ -149,7 +149,8 @@ impl Visitor for StandardMotions {
             compare_paths(system, Evi::simpson(S::HORIZON / STEPS_TO_THE_HORIZON), start);
         println!("{}: {largest:.1} ε, {fallbacks} fallbacks", S::NAME);
         // Round-off of 100 steps: 37 ε measured on the linkage, 218 ε on the top, whose multipliers no past predicts.
-        assert!(largest <= 256.0, "{}: {largest} ε", S::NAME);
+        let bound = if S::NAME == "heavy_top" { 256.0 } else { 64.0 };
+        assert!(largest <= bound, "{}: {largest} ε", S::NAME);
         // The squeezer's elimination would be too long, so that it has the dense one.
         assert_eq!(fallbacks > 0, S::NAME == "andrews_squeezer", "{}: {fallbacks} fallbacks", S::NAME);
     }
