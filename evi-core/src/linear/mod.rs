@@ -12,6 +12,8 @@ mod in_place;
 mod kkt;
 #[cfg(feature = "std")]
 mod lane_ldl;
+#[cfg(feature = "std")]
+mod ordering;
 mod pivoted;
 mod symmetric_eigen;
 mod triangular;
@@ -28,6 +30,8 @@ pub(crate) use kkt::reciprocal_power_of_two;
 pub(crate) use kkt::{FactoredKkt, Kkt, constraint_index, unknowns};
 #[cfg(feature = "std")]
 pub(crate) use lane_ldl::{LaneGram, LaneMass};
+#[cfg(feature = "std")]
+pub(crate) use ordering::band_places;
 pub(crate) use pivoted::Pivoted;
 pub(crate) use symmetric_eigen::SymmetricEigen;
 pub(crate) use triangular::Cholesky;
