@@ -394,7 +394,7 @@ impl<S: MechanicalSystem, const K: usize> LaneStep<S, K> {
 
 /// Zeros; written as a copy, since what builds an array from a function is not always inlined.
 #[inline(always)]
-fn nothing<A: Array<Lanes>>() -> A {
+pub(super) fn nothing<A: Array<Lanes>>() -> A {
     A::filled(Lanes::ZERO)
 }
 
@@ -418,7 +418,7 @@ pub(super) fn product<const K: usize, const FUSED: bool>(columns: &Columns, x: L
 
 /// `q₀ + d`.
 #[inline(always)]
-fn from_start<S: MechanicalSystem>(start: &State<S>, differences: &Nodes<S>) -> Nodes<S> {
+pub(super) fn from_start<S: MechanicalSystem>(start: &State<S>, differences: &Nodes<S>) -> Nodes<S> {
     let mut positions: Nodes<S> = nothing();
     for i in 0..S::N_COORDINATES {
         positions[i] = Lanes::splat(start.q[i]) + differences[i];

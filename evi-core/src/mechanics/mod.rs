@@ -26,6 +26,8 @@ mod matrix_action;
 mod modes;
 mod momentum;
 mod observables;
+#[cfg(feature = "std")]
+mod point_passes;
 mod quadratic_part;
 mod round_off;
 mod separable_action;
@@ -54,6 +56,8 @@ pub(crate) use modes::Modes;
 pub(crate) use momentum::relative;
 pub use momentum::{Acceleration, ProjectionError};
 pub(crate) use observables::norm;
+#[cfg(feature = "std")]
+pub(crate) use point_passes::{NodeMotion, PointEnd, PointGuess, PointIteration, PointPasses};
 pub use quadratic_part::QuadraticPart;
 pub(crate) use quadratic_part::StepModes;
 pub use round_off::LostDigits;

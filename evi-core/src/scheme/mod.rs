@@ -18,6 +18,8 @@ mod mode;
 mod mollifier;
 #[cfg(feature = "std")]
 mod nodal;
+#[cfg(feature = "std")]
+mod point_tables;
 mod quadrature;
 mod scene_frequencies;
 
@@ -42,6 +44,8 @@ pub use mollifier::Mollifier;
 pub(crate) use nodal::LobattoNodes;
 #[cfg(feature = "std")]
 pub use nodal::{MOST_INTERVALS, NodalCurves, NodalTable, NodalTables};
+#[cfg(feature = "std")]
+pub(crate) use point_tables::PointTables;
 pub use quadrature::{Quadrature, QuadratureError};
 pub use scene_frequencies::{SceneFrequencies, SceneTable};
 

@@ -59,7 +59,7 @@ impl<const S: usize> NodalTable<S> {
         if node == 0 { &self.first } else { &self.others[node - 1] }
     }
 
-    fn polynomial() -> Self {
+    pub(crate) fn polynomial() -> Self {
         let nodes = LobattoNodes::<S>::new();
         Self::from_matrix(&nodes.differentiation(), |_| 0.0)
     }

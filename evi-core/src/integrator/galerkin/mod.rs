@@ -2,6 +2,7 @@
 
 mod newton;
 mod passes;
+mod points;
 
 use core::fmt;
 
@@ -12,6 +13,7 @@ use crate::scheme::{Frequency, Linear, NodalCurves, SchemeError, checked_step_si
 use crate::system::MechanicalSystem;
 use newton::NewtonSolve;
 use passes::LanePasses;
+use points::PointSteps;
 
 /// A Galerkin variational integrator with `K` intervals between Lobatto nodes, `1 ≤ K ≤ 8`.
 ///
@@ -89,10 +91,16 @@ impl<S: MechanicalSystem, const K: usize, F: NodalCurves<S>> Scheme<S> for Galer
     fn prepare(&self, mechanics: Mechanics<S>) -> Result<Self::Step, SchemeError> {
         let h = checked_step_size(self.h)?;
         let action = GalerkinAction::new(mechanics, self.curves.tables::<K>(h)?, h);
-        let has_passes = F::ARE_POLYNOMIALS && LanePasses::<S, K>::EXIST && !self.by_newton;
+        let has_passes = F::ARE_POLYNOMIALS && !self.by_newton;
+        let is_mass_constant = LanePasses::<S, K>::EXIST;
         Ok(GalerkinStep {
             // A mass matrix that is singular leaves the step to Newton's iteration.
-            passes: if has_passes { LanePasses::new(&action.mechanics, h).ok() } else { None },
+            passes: if has_passes && is_mass_constant {
+                LanePasses::new(&action.mechanics, h).ok()
+            } else {
+                None
+            },
+            points: (has_passes && !is_mass_constant).then(|| PointSteps::new(&action.mechanics, h)),
             newton: NewtonSolve::new(&action),
             action,
         })
@@ -102,16 +110,20 @@ impl<S: MechanicalSystem, const K: usize, F: NodalCurves<S>> Scheme<S> for Galer
 /// The one-step map of a [`Galerkin`] scheme, with the storage of its iterations: nothing is allocated under a step.
 pub struct GalerkinStep<S: MechanicalSystem, F: NodalCurves<S>, const K: usize> {
     action: GalerkinAction<S, F::Tables<K>, K>,
+    /// Of scenes with a constant mass.
     passes: Option<LanePasses<S, K>>,
+    /// Of all others.
+    points: Option<PointSteps<S, K>>,
     newton: NewtonSolve<S, K>,
 }
 
 impl<S: MechanicalSystem, F: NodalCurves<S>, const K: usize> GalerkinStep<S, F, K> {
     /// How its steps are solved: which iteration, in which vector instructions; to be printed.
     pub fn iteration(&self) -> Iteration {
-        match &self.passes {
-            Some(passes) => Iteration::Passes(passes.instruction_set()),
-            None => Iteration::Newton,
+        match (&self.passes, &self.points) {
+            (Some(passes), _) => Iteration::Passes(passes.instruction_set()),
+            (_, Some(passes)) => Iteration::Passes(passes.instruction_set()),
+            _ => Iteration::Newton,
         }
     }
 }
@@ -169,14 +181,27 @@ impl<S: MechanicalSystem, F: NodalCurves<S>, const K: usize> GalerkinStep<S, F, 
         round_off: R,
         tally: &mut impl Tally,
     ) -> Result<[Lost<S, R>; 2], StepError> {
-        if let Some(passes) = &mut self.passes {
-            if let Some(end) = passes.solve(&self.action.mechanics, state, tally) {
-                let lost = passes.land(&self.action.mechanics, state, round_off, end, tally)?;
-                self.newton.remember(None);
-                return Ok(lost);
+        // Branches on constants, so that a scene has code for one kind of passes.
+        if LanePasses::<S, K>::EXIST {
+            if let Some(passes) = &mut self.passes {
+                if let Some(end) = passes.solve(&self.action.mechanics, state, tally) {
+                    let lost = passes.land(&self.action.mechanics, state, round_off, end, tally)?;
+                    self.newton.remember(None);
+                    return Ok(lost);
+                }
+                tally.count_newton();
+                passes.forget();
             }
-            tally.count_newton();
-            passes.forget();
+        } else if F::ARE_POLYNOMIALS {
+            if let Some(passes) = &mut self.points {
+                if let Some(end) = passes.solve(&self.action.mechanics, state, tally) {
+                    let lost = passes.land(&self.action.mechanics, state, round_off, end, tally)?;
+                    self.newton.remember(None);
+                    return Ok(lost);
+                }
+                tally.count_newton();
+                passes.forget();
+            }
         }
         let points = self.newton.solve(&self.action, state, tally)?;
         let t = state.t + self.action.h();
