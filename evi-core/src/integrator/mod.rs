@@ -15,6 +15,8 @@ mod gauss;
 mod matrix_evi;
 mod multipliers;
 mod positions;
+#[cfg(feature = "std")]
+mod proposal;
 mod run;
 mod simulation;
 #[cfg(feature = "std")]
@@ -31,6 +33,8 @@ pub use gauss::{Gauss, GaussStep};
 pub use matrix_evi::{
     LinearisedAlong, LinearisedAt, MatrixEvi, MatrixEviStep, QuadraticModel, StepMode, Stiffness,
 };
+#[cfg(feature = "std")]
+pub use proposal::{LONGEST_TRIAL, Member, PASSES_OF_NEWTON, Proposal, ProposalError, propose};
 pub use run::Run;
 #[cfg(feature = "generic")]
 pub(crate) use run::steps_between;

@@ -24,7 +24,7 @@ use crate::array::Array;
 use crate::linear::{LaneGram, LaneMass};
 use crate::newton::{NotConverged, Progress};
 use crate::scalar::{LaneOperation, Lanes, Scalar};
-use crate::scheme::{PAST, PointTables};
+use crate::scheme::{Columns, PAST, PointTables};
 use crate::system::{LagrangianGradient, MassShape, MechanicalSystem};
 
 /// One value per coordinate at every node.
@@ -373,17 +373,17 @@ impl<S: MechanicalSystem, const K: usize> PointPasses<S, K> {
             FirstPoints::<S> { differences: nothing(), velocities: nothing(), multipliers: nothing() };
         match guess {
             PointGuess::Continued([last, before]) => {
-                let predicted = |[of_last, of_before]: &[_; PAST], last: Lanes, before: Lanes| {
-                    let older = product::<K, FUSED>(of_before, before, Lanes::ZERO);
-                    product::<K, FUSED>(of_last, last, older)
-                };
                 for i in 0..S::N_COORDINATES {
-                    first.velocities[i] =
-                        predicted(&self.tables.prediction, last.velocities[i], before.velocities[i]);
+                    first.velocities[i] = predicted::<K, FUSED>(
+                        &self.tables.prediction,
+                        [last.velocities[i], before.velocities[i]],
+                    );
                 }
                 for c in 0..S::N_CONSTRAINTS {
-                    let prediction = &self.tables.lobatto.prediction;
-                    first.multipliers[c] = predicted(prediction, last.multipliers[c], before.multipliers[c]);
+                    first.multipliers[c] = predicted::<K, FUSED>(
+                        &self.tables.lobatto.prediction,
+                        [last.multipliers[c], before.multipliers[c]],
+                    );
                 }
             }
             PointGuess::Constant(at_start) => {
@@ -401,6 +401,16 @@ impl<S: MechanicalSystem, const K: usize> PointPasses<S, K> {
         }
         first
     }
+}
+
+/// What follows the values of the last step and of the one before.
+#[inline(always)]
+fn predicted<const K: usize, const FUSED: bool>(
+    [of_last, of_before]: &[Columns; PAST],
+    [last, before]: [Lanes; PAST],
+) -> Lanes {
+    let older = product::<K, FUSED>(of_before, before, Lanes::ZERO);
+    product::<K, FUSED>(of_last, last, older)
 }
 
 /// One number per coordinate; written as a copy, since what builds an array from a function is not always inlined.

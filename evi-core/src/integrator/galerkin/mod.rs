@@ -27,9 +27,9 @@ use points::PointSteps;
 /// Linear momentum is kept by polynomials, and by every frequency from `K = 2` on, since the curves then contain the
 /// constants. One interval is RATTLE, and with a frequency the exponential integrator on the trapezoidal rule.
 ///
-/// Polynomials on a constant mass matrix are found by passes over all nodes at once, a node per vector lane, at a cost of a few kernels
-/// per pass; other steps, and those whose passes do not converge, by Newton's iteration on `K (n + m)` unknowns. `K = 8` fills
-/// the lanes, and is the fastest member for errors below 1e-4.
+/// Polynomials are found by passes over all nodes at once, a node per vector lane, at a cost of a few kernels per pass; mixed curves, and steps whose
+/// passes do not converge, by Newton's iteration on `K (n + m)` unknowns. `K = 8` fills the lanes, and is the fastest member for errors below 1e-4;
+/// [`propose`](super::propose) finds the step size for an error.
 ///
 /// ```
 /// use evi_core::prelude::*;
