@@ -181,27 +181,18 @@ impl<S: MechanicalSystem, F: NodalCurves<S>, const K: usize> GalerkinStep<S, F, 
         round_off: R,
         tally: &mut impl Tally,
     ) -> Result<[Lost<S, R>; 2], StepError> {
+        let mechanics = &self.action.mechanics;
         // Branches on constants, so that a scene has code for one kind of passes.
-        if LanePasses::<S, K>::EXIST {
-            if let Some(passes) = &mut self.passes {
-                if let Some(end) = passes.solve(&self.action.mechanics, state, tally) {
-                    let lost = passes.land(&self.action.mechanics, state, round_off, end, tally)?;
-                    self.newton.remember(None);
-                    return Ok(lost);
-                }
-                tally.count_newton();
-                passes.forget();
-            }
-        } else if F::ARE_POLYNOMIALS {
-            if let Some(passes) = &mut self.points {
-                if let Some(end) = passes.solve(&self.action.mechanics, state, tally) {
-                    let lost = passes.land(&self.action.mechanics, state, round_off, end, tally)?;
-                    self.newton.remember(None);
-                    return Ok(lost);
-                }
-                tally.count_newton();
-                passes.forget();
-            }
+        let landed = if !F::ARE_POLYNOMIALS {
+            None
+        } else if LanePasses::<S, K>::EXIST {
+            by_passes(&mut self.passes, mechanics, state, round_off, tally)?
+        } else {
+            by_passes(&mut self.points, mechanics, state, round_off, tally)?
+        };
+        if let Some(lost) = landed {
+            self.newton.remember(None);
+            return Ok(lost);
         }
         let points = self.newton.solve(&self.action, state, tally)?;
         let t = state.t + self.action.h();
@@ -217,4 +208,49 @@ impl<S: MechanicalSystem, F: NodalCurves<S>, const K: usize> GalerkinStep<S, F, 
         self.newton.remember(Some(points));
         Ok([lost_q, lost_p])
     }
+}
+
+/// Passes over all nodes, with the past that they begin from.
+trait NodePasses<S: MechanicalSystem> {
+    /// What passes find.
+    type End;
+
+    /// The end of the step from `start`, if the passes converge: from the last steps, or from the state alone.
+    fn solve(
+        &mut self,
+        mechanics: &Mechanics<S>,
+        start: &State<S>,
+        tally: &mut impl Tally,
+    ) -> Option<Self::End>;
+
+    /// Overwrites `state` with that end, on the constraints and the hidden ones to round-off, and returns the digits that this loses.
+    fn land<R: RoundOff<S>>(
+        &mut self,
+        mechanics: &Mechanics<S>,
+        state: &mut State<S>,
+        round_off: R,
+        end: Self::End,
+        tally: &mut impl Tally,
+    ) -> Result<[Lost<S, R>; 2], StepError>;
+
+    /// Drops the past: the next step is not predicted from it.
+    fn forget(&mut self);
+}
+
+/// Takes the step by passes; `None` if there are none, or if they do not converge.
+#[inline]
+fn by_passes<S: MechanicalSystem, R: RoundOff<S>>(
+    passes: &mut Option<impl NodePasses<S>>,
+    mechanics: &Mechanics<S>,
+    state: &mut State<S>,
+    round_off: R,
+    tally: &mut impl Tally,
+) -> Result<Option<[Lost<S, R>; 2]>, StepError> {
+    let Some(passes) = passes else { return Ok(None) };
+    if let Some(end) = passes.solve(mechanics, state, tally) {
+        return passes.land(mechanics, state, round_off, end, tally).map(Some);
+    }
+    tally.count_newton();
+    passes.forget();
+    Ok(None)
 }

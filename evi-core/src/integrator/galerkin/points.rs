@@ -2,6 +2,7 @@
 
 use core::borrow::Borrow;
 
+use super::NodePasses;
 use crate::array::Array;
 use crate::integrator::{StepError, Tally};
 use crate::linear::unknowns;
@@ -38,14 +39,12 @@ impl<S: MechanicalSystem, const K: usize> PointSteps<S, K> {
     pub(super) const fn instruction_set(&self) -> InstructionSet {
         self.instructions
     }
+}
 
-    /// Drops the past: the next step is not predicted from it.
-    pub(super) fn forget(&mut self) {
-        self.known = 0;
-    }
+impl<S: MechanicalSystem, const K: usize> NodePasses<S> for PointSteps<S, K> {
+    type End = PointEnd<S>;
 
-    /// The end of the step from `start`, if the passes converge: from the last steps, or from the acceleration of the state.
-    pub(super) fn solve(
+    fn solve(
         &mut self,
         mechanics: &Mechanics<S>,
         start: &State<S>,
@@ -67,9 +66,7 @@ impl<S: MechanicalSystem, const K: usize> PointSteps<S, K> {
         Some(end)
     }
 
-    /// Overwrites `state` with the end of the step that the passes have found, on the constraints and the hidden ones to round-off, and returns the
-    /// digits that this loses.
-    pub(super) fn land<R: RoundOff<S>>(
+    fn land<R: RoundOff<S>>(
         &mut self,
         mechanics: &Mechanics<S>,
         state: &mut State<S>,
@@ -105,5 +102,10 @@ impl<S: MechanicalSystem, const K: usize> PointSteps<S, K> {
         self.past[0].clone_from(&self.passes.found);
         self.known = PAST.min(self.known + 1);
         Ok([lost_q, lost_p])
+    }
+
+    #[inline]
+    fn forget(&mut self) {
+        self.known = 0;
     }
 }
