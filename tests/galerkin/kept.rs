@@ -134,4 +134,6 @@ fn the_symplectic_form() {
     let angles = DoublePendulumInAngles::UNEQUAL;
     let moderate = DoublePendulumInAngles::MODERATE;
     check_symplectic::<_, _, 3, 4, 2>(angles, Galerkin::new(H), [0.0; 2], moderate);
+    let crank = SliderCrank::STANDARD;
+    check_symplectic::<_, _, 3, 4, 3>(crank, Galerkin::new(0.2 * H), [0.0; 3], crank.stretched_out(5.0));
 }

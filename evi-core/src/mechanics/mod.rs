@@ -27,6 +27,8 @@ mod modes;
 mod momentum;
 mod observables;
 #[cfg(feature = "std")]
+mod point_guess;
+#[cfg(feature = "std")]
 mod point_passes;
 mod quadratic_part;
 mod round_off;
@@ -57,7 +59,9 @@ pub(crate) use momentum::relative;
 pub use momentum::{Acceleration, ProjectionError};
 pub(crate) use observables::norm;
 #[cfg(feature = "std")]
-pub(crate) use point_passes::{NodeMotion, PointEnd, PointGuess, PointIteration, PointPasses};
+pub(crate) use point_guess::{NodeMotion, PointGuess};
+#[cfg(feature = "std")]
+pub(crate) use point_passes::{PointEnd, PointIteration, PointPasses};
 pub use quadratic_part::QuadraticPart;
 pub(crate) use quadratic_part::StepModes;
 pub use round_off::LostDigits;

@@ -19,19 +19,14 @@
 //! equations exactly, whatever `Mᵢ` and `Sᵢ` are and wherever the first pass begins.
 
 use super::lane_step::{from_start, nothing, product, reach};
-use super::{Acceleration, ForcePoint, Mechanics, State};
+use super::point_guess::{FirstPoints, NodeMotion, NodeMultipliers, Nodes, PointGuess};
+use super::{ForcePoint, Mechanics, State};
 use crate::array::Array;
 use crate::linear::{LaneGram, LaneMass};
 use crate::newton::{NotConverged, Progress};
 use crate::scalar::{LaneOperation, Lanes, Scalar};
-use crate::scheme::{Columns, PAST, PointTables};
+use crate::scheme::PointTables;
 use crate::system::{LagrangianGradient, MassShape, MechanicalSystem};
-
-/// One value per coordinate at every node.
-type Nodes<S> = <S as MechanicalSystem>::PerCoordinate<Lanes>;
-
-/// One value per constraint at every node.
-type NodeMultipliers<S> = <S as MechanicalSystem>::PerConstraint<Lanes>;
 
 /// Mass and Gram matrices are made anew after a pass that has moved a point by more than this share of the configuration.
 const STALE: f64 = 3e-3;
@@ -46,26 +41,6 @@ pub(crate) struct PointPasses<S: MechanicalSystem, const K: usize> {
     pub(crate) found: NodeMotion<S>,
 }
 
-/// Velocities at the nodes `1 .. K` and multipliers at the nodes before the last.
-pub(crate) struct NodeMotion<S: MechanicalSystem> {
-    velocities: Nodes<S>,
-    multipliers: NodeMultipliers<S>,
-}
-
-// Written out, since a derive would demand the same of `S`.
-impl<S: MechanicalSystem> Clone for NodeMotion<S> {
-    fn clone(&self) -> Self {
-        Self { velocities: self.velocities.clone(), multipliers: self.multipliers.clone() }
-    }
-}
-
-impl<S: MechanicalSystem> NodeMotion<S> {
-    /// Nothing moves.
-    pub(crate) fn rest() -> Self {
-        Self { velocities: nothing(), multipliers: nothing() }
-    }
-}
-
 /// What a step changes, before the constraints are met at its end to round-off.
 pub(crate) struct PointEnd<S: MechanicalSystem> {
     /// `q_K − q₀`.
@@ -76,14 +51,6 @@ pub(crate) struct PointEnd<S: MechanicalSystem> {
     pub(crate) velocity: S::PerCoordinate<f64>,
     /// Passes taken.
     pub(crate) passes: usize,
-}
-
-/// Where the passes begin.
-pub(crate) enum PointGuess<'a, S: MechanicalSystem> {
-    /// From the last steps, the last one first.
-    Continued(&'a [NodeMotion<S>; PAST]),
-    /// From the acceleration and the multipliers of the state.
-    Constant(&'a Acceleration<S>),
 }
 
 /// Passes until they have converged, as an operation on lanes.
@@ -101,13 +68,6 @@ impl<S: MechanicalSystem, const K: usize> LaneOperation for PointIteration<'_, S
     fn run<const FUSED: bool>(self) -> Self::Output {
         self.passes.iterate::<FUSED>(self.mechanics, self.start, &self.guess)
     }
-}
-
-/// Where the passes begin: differences, and the velocities whose integrals they are.
-struct FirstPoints<S: MechanicalSystem> {
-    differences: Nodes<S>,
-    velocities: Nodes<S>,
-    multipliers: NodeMultipliers<S>,
 }
 
 /// Momenta and forces at all nodes.
@@ -147,7 +107,7 @@ impl<S: MechanicalSystem, const K: usize> PointPasses<S, K> {
         let times = self.tables.lobatto.nodes + Lanes::splat(start.t);
         let (_, start_jacobian) = S::constraint_derivatives(&mechanics.constants, start.t, &start.q);
         let FirstPoints { mut differences, mut velocities, mut multipliers } =
-            self.first::<FUSED>(start, guess);
+            guess.first::<K, FUSED>(&self.tables, start);
         let mut start_velocity: S::PerCoordinate<f64> =
             sums::<S>(|i| (self.tables.extrapolation * velocities[i]).sum());
         // What the velocities do not know of yet.
@@ -365,52 +325,6 @@ impl<S: MechanicalSystem, const K: usize> PointPasses<S, K> {
         }
         reach(Scalar::sqrt(here.largest()), Scalar::sqrt(way.largest()))
     }
-
-    /// Where the passes begin.
-    #[inline(always)]
-    fn first<const FUSED: bool>(&self, start: &State<S>, guess: &PointGuess<'_, S>) -> FirstPoints<S> {
-        let mut first =
-            FirstPoints::<S> { differences: nothing(), velocities: nothing(), multipliers: nothing() };
-        match guess {
-            PointGuess::Continued([last, before]) => {
-                for i in 0..S::N_COORDINATES {
-                    first.velocities[i] = predicted::<K, FUSED>(
-                        &self.tables.prediction,
-                        [last.velocities[i], before.velocities[i]],
-                    );
-                }
-                for c in 0..S::N_CONSTRAINTS {
-                    first.multipliers[c] = predicted::<K, FUSED>(
-                        &self.tables.lobatto.prediction,
-                        [last.multipliers[c], before.multipliers[c]],
-                    );
-                }
-            }
-            PointGuess::Constant(at_start) => {
-                for i in 0..S::N_COORDINATES {
-                    let change = self.tables.lobatto.nodes * Lanes::splat(at_start.acceleration[i]);
-                    first.velocities[i] = Lanes::splat(start.v[i]) + change;
-                }
-                for c in 0..S::N_CONSTRAINTS {
-                    first.multipliers[c] = Lanes::splat(at_start.multipliers[c]);
-                }
-            }
-        }
-        for i in 0..S::N_COORDINATES {
-            first.differences[i] = product::<K, FUSED>(&self.tables.ways, first.velocities[i], Lanes::ZERO);
-        }
-        first
-    }
-}
-
-/// What follows the values of the last step and of the one before.
-#[inline(always)]
-fn predicted<const K: usize, const FUSED: bool>(
-    [of_last, of_before]: &[Columns; PAST],
-    [last, before]: [Lanes; PAST],
-) -> Lanes {
-    let older = product::<K, FUSED>(of_before, before, Lanes::ZERO);
-    product::<K, FUSED>(of_last, last, older)
 }
 
 /// One number per coordinate; written as a copy, since what builds an array from a function is not always inlined.
