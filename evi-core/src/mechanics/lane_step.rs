@@ -189,7 +189,7 @@ impl<S: MechanicalSystem, const K: usize> LaneStep<S, K> {
             let length = Scalar::sqrt(squares.largest().abs()) * per_reach;
             is_stale = length > STALE;
             // In the first pass nothing has moved yet.
-            if (passes == 1 && Self::FORCE_VARIES) || !progress.has_converged(length)? {
+            if (passes == 1 && Self::FORCE_VARIES) || !progress.has_converged_linearly(length)? {
                 continue;
             }
             let mut difference: S::PerCoordinate<f64> = Array::filled(0.0);

@@ -186,7 +186,7 @@ impl<S: MechanicalSystem, const K: usize> PointPasses<S, K> {
             let length = Scalar::sqrt(square) * per_reach;
             is_stale = length > STALE;
             // Then once more, for the forces where the points have come to.
-            is_last = progress.has_converged(length)?;
+            is_last = progress.has_converged_linearly(length)?;
         }
     }
 
