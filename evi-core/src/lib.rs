@@ -41,6 +41,7 @@
 //! | `std` | yes | trajectories on the heap; comparisons; elementary functions of the platform. Without it the crate is `no_std` |
 //! | `dispatch` | yes | `Galerkin` and `Gauss` steps in the vector instructions of the machine that the program runs on |
 //! | `derive` | yes | re-exports `#[derive(MechanicalSystem)]` |
+//! | `serde` | no | [`integrator::Checkpoint`] can be serialised |
 //! | `source` | no | [`system::MechanicalSystem::SOURCE`] holds the generated code, to read |
 //! | `generic` | no | `generic::GenericEvi` for systems of run-time size; [`scalar::Scalar`] for the dual numbers of num-dual |
 
@@ -58,6 +59,7 @@ pub mod generic;
 pub mod integrator;
 pub mod linear;
 pub mod mechanics;
+pub mod memory;
 mod newton;
 pub mod report;
 pub mod scalar;
@@ -69,6 +71,8 @@ pub mod __private;
 
 /// What a simulation needs: the derive, schemes, and runs.
 pub mod prelude {
+    #[cfg(feature = "std")]
+    pub use crate::integrator::{Checkpoint, ResumeError};
     pub use crate::integrator::{
         Compensable, Composition, Evi, OneStep, Run, Scheme, Simulation, StartError, StepError, Symmetric,
     };

@@ -6,6 +6,7 @@
 
 use super::{Compensable, CompensableStep, OneStep, Scheme, StepError, Tally};
 use crate::mechanics::{LostDigits, Mechanics, State};
+use crate::memory::{Memory, memory};
 use crate::scheme::SchemeError;
 use crate::system::MechanicalSystem;
 
@@ -256,6 +257,18 @@ impl<S: MechanicalSystem, M, const N: usize> ComposedStep<S, M, N> {
         Ok(())
     }
 }
+
+memory!([S: MechanicalSystem, M: Memory, const N: usize] ComposedStep<S, M, N>, |words|
+    Self { mechanics: _, stages, starts, h } => {
+        for start in starts {
+            words.fixed(*start);
+        }
+        words.fixed(*h);
+        for stage in stages {
+            words.part(stage);
+        }
+    }
+);
 
 #[cfg(test)]
 mod tests {

@@ -11,6 +11,7 @@ use crate::mechanics::{
     ConstantLegendre, DiscreteLagrangian, Dropped, FoldedStep, ImplicitStep, LeapfrogStep, Lost, LostDigits,
     Mechanics, ProjectionError, RoundOff, State, StepSolution, StepStart, Sum,
 };
+use crate::memory::memory;
 use crate::newton::Tally;
 use crate::scheme::{
     Frequency, Interpolant, Linear, Quadrature, SceneFrequencies, SchemeError, checked_step_size,
@@ -324,3 +325,17 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
         Ok((v, momentum))
     }
 }
+
+memory!([S: MechanicalSystem, F: Interpolant<S>, const K: usize] EviStep<S, F, K>, |words|
+    Self { action, folded, leapfrog, legendre: _, sags } => {
+        action.for_each_number(|number| words.fixed(number));
+        // Which of the steps there are depends on the scene and the scheme alone.
+        if let Some(folded) = folded {
+            words.part(folded);
+        }
+        if let Some(leapfrog) = leapfrog {
+            words.part(leapfrog);
+        }
+        words.part(sags);
+    }
+);

@@ -8,6 +8,7 @@ use crate::mechanics::{
     Dropped, ImplicitStep, ImpulseStep, MatrixAction, Mechanics, QuadraticPart, Rounded, State, StepModes,
     StepStart,
 };
+use crate::memory::memory;
 use crate::scheme::{Mollifier, Quadrature, SchemeError, checked_step_size};
 use crate::system::MechanicalSystem;
 
@@ -277,3 +278,14 @@ fn advance<S: MechanicalSystem, const K: usize>(
         .map_err(|cause| StepError::Projection { t, cause })?;
     state.replace(t, q, v, momentum.0)
 }
+
+memory!([S: MechanicalSystem, const K: usize] MatrixEviStep<S, K>, |words| Self { form, modes: _ } => {
+    match form {
+        Form::Impulse { mechanics: _, step, h: _ } => {
+            step.free().for_each_number(|number| words.fixed(number));
+            words.part(step);
+        }
+        // Its iteration begins from the state.
+        Form::General(action) => action.for_each_number(|number| words.fixed(number)),
+    }
+});

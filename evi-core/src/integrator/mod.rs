@@ -4,6 +4,8 @@
 //! [`OneStep`] map that holds everything that is constant for the run. A [`Simulation`] joins a scene with a scheme;
 //! a [`Run`] is a simulation at a state.
 
+#[cfg(feature = "std")]
+mod checkpoint;
 mod compensated;
 mod composition;
 mod curves;
@@ -21,6 +23,8 @@ mod simulation;
 mod trajectory;
 
 pub use crate::newton::{Fallbacks, Statistics, Tally};
+#[cfg(feature = "std")]
+pub use checkpoint::{Checkpoint, ResumeError};
 pub use compensated::{Compensable, CompensableStep, Compensated, CompensatedStep};
 pub use composition::{Composed, ComposedStep, Composition, Symmetric};
 pub use evi::{Evi, EviStep};
@@ -42,6 +46,7 @@ pub use trajectory::{Interrupted, Trajectory};
 
 use crate::linear::SingularMatrix;
 use crate::mechanics::{Mechanics, NOTHING, ProjectionError, State};
+use crate::memory::Memory;
 use crate::newton::NotConverged;
 use crate::scheme::SchemeError;
 use crate::system::MechanicalSystem;
@@ -58,8 +63,8 @@ pub trait Scheme<S: MechanicalSystem> {
     fn prepare(&self, mechanics: Mechanics<S>) -> Result<Self::Step, SchemeError>;
 }
 
-/// A map from the state at `t` to the state at `t + h`.
-pub trait OneStep<S: MechanicalSystem> {
+/// A map from the state at `t` to the state at `t + h`, with a [`Memory`] of the steps before.
+pub trait OneStep<S: MechanicalSystem>: Memory {
     /// Step size; negative for a map that goes back in time.
     fn h(&self) -> f64;
 

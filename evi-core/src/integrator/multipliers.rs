@@ -512,3 +512,16 @@ impl<S: MechanicalSystem> Correction<S> {
         }
     }
 }
+
+crate::memory::memory!([S: MechanicalSystem, F] MultiplierStep<S, F>, |words| Self { free: _, history } => {
+    let History { predicted, previous } = history;
+    words.numbers(predicted);
+    words.part(previous);
+});
+
+impl<S: MechanicalSystem, F> MultiplierStep<S, F> {
+    /// The step without its constraint forces.
+    pub(crate) const fn free(&self) -> &F {
+        &self.free
+    }
+}

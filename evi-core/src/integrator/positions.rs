@@ -8,6 +8,7 @@ use super::{IterationFailure, StepError};
 use crate::array::Array;
 use crate::linear::{Factorization, constraint_index, largest_magnitude};
 use crate::mechanics::{ImplicitStep, StepSolution, StepStart};
+use crate::memory::memory;
 use crate::newton::{self, Converged, Tally};
 use crate::system::MechanicalSystem;
 
@@ -80,6 +81,13 @@ impl<S: MechanicalSystem> Sags<S> {
         self.previous = [sag, first.clone()];
     }
 }
+
+memory!([S: MechanicalSystem] Sags<S>, |words| Self { predicted, previous, was_right, is_trusted } => {
+    words.numbers(predicted);
+    words.part(previous);
+    words.flag(was_right);
+    words.flag(is_trusted);
+});
 
 /// Solves the equations of a step.
 ///

@@ -48,6 +48,17 @@ impl<S: MechanicalSystem, M: OneStep<S>> Run<S, M> {
 }
 
 impl<S: MechanicalSystem, M: OneStep<S>, T: Tally> Run<S, M, T> {
+    /// The run that has come from `start_time` to `state` in so many steps.
+    #[cfg(feature = "std")]
+    pub(super) const fn resumed(map: M, state: State<S>, start_time: f64, steps: u64, tally: T) -> Self {
+        Self { map, state, start_time, steps, tally }
+    }
+
+    /// Time of the state that the run has started from.
+    pub const fn start_time(&self) -> f64 {
+        self.start_time
+    }
+
     /// The run from where it stands, with another tally of what happens inside its steps:
     /// `run.with_tally(Statistics::default())` counts Newton's corrections too.
     pub fn with_tally<U: Tally>(self, tally: U) -> Run<S, M, U> {

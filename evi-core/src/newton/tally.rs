@@ -1,5 +1,7 @@
 //! What happens inside steps, counted.
 
+use crate::memory::memory;
+
 /// What is counted under the steps of a run. A step tells it what happens, as it happens; what a tally does not count costs
 /// nothing.
 pub trait Tally {
@@ -74,3 +76,11 @@ impl Tally for Statistics {
         self.fallbacks += 1;
     }
 }
+
+memory!([] Fallbacks, |words| Self { fallbacks } => { words.count(fallbacks) });
+
+memory!([] Statistics, |words| Self { corrections, fallbacks, restarts, newton_steps } => {
+    for count in [corrections, fallbacks, restarts, newton_steps] {
+        words.count(count);
+    }
+});

@@ -5,6 +5,7 @@ use crate::array::Array;
 use crate::integrator::{IterationFailure, StepError, Tally};
 use crate::linear::{InPlaceLu, constraint_index, largest_magnitude};
 use crate::mechanics::{GalerkinAction, Points, State, relative};
+use crate::memory::memory;
 use crate::newton::{self, Converged};
 use crate::scheme::NodalTables;
 use crate::system::MechanicalSystem;
@@ -54,6 +55,11 @@ impl<S: MechanicalSystem, const K: usize> NewtonSolve<S, K> {
         Ok(points)
     }
 }
+
+// Matrix and factors are written anew in every correction.
+memory!([S: MechanicalSystem, const K: usize] NewtonSolve<S, K>, |words|
+    Self { extrapolation: _, storage: _, past } => { words.optional(past, Points::none) }
+);
 
 /// The parabola with the acceleration and the multipliers of the state.
 fn parabola<S: MechanicalSystem, T: NodalTables<K>, const K: usize>(
