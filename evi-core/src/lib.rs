@@ -32,7 +32,7 @@
 //!
 //! [`mod@array`], [`scalar`], [`system`] and [`scheme`] stand at the bottom; above them `newton` and [`linear`], then
 //! [`mechanics`] (energies, projections, the equations of one step), then [`integrator`] (one-step maps and runs),
-//! and beside the integrators [`baseline`], [`generic`], [`comparison`] and [`report`]. Imports point downwards.
+//! and beside the integrators [`baseline`], [`generic`], [`comparison`], [`report`] and [`watch`]. Imports point downwards.
 //!
 //! # Features
 //!
@@ -65,6 +65,7 @@ pub mod report;
 pub mod scalar;
 pub mod scheme;
 pub mod system;
+pub mod watch;
 
 #[doc(hidden)]
 pub mod __private;

@@ -201,7 +201,7 @@ impl<S: MechanicalSystem, M: OneStep<S>, T: Tally> Run<S, M, T> {
     }
 
     /// Number of whole steps nearest to the span from here to `t`.
-    fn steps_to(&self, t: f64) -> Result<u64, StepError> {
+    pub(crate) fn steps_to(&self, t: f64) -> Result<u64, StepError> {
         steps_between(self.state.t, t, self.map.h())
     }
 }
