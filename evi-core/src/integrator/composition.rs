@@ -239,6 +239,11 @@ impl<S: MechanicalSystem, M: CompensableStep<S>, const N: usize> CompensableStep
 }
 
 impl<S: MechanicalSystem, M, const N: usize> ComposedStep<S, M, N> {
+    /// The maps of the stages, in their order.
+    pub const fn stages(&self) -> &[M; N] {
+        &self.stages
+    }
+
     /// Overwrites `state` with where the stages lead one after the other.
     #[inline(always)]
     fn take_stages(

@@ -9,7 +9,7 @@ use crate::mechanics::{
     StepStart,
 };
 use crate::memory::memory;
-use crate::scheme::{Mollifier, Quadrature, SchemeError, checked_step_size};
+use crate::scheme::{Mollifier, Quadrature, SchemeError, checked_step_size, to_multiple_of_pi};
 use crate::system::MechanicalSystem;
 
 /// An exponential variational integrator that integrates a quadratic part of the Lagrangian exactly, and samples only the rest of
@@ -207,6 +207,14 @@ pub struct StepMode {
     /// How much a step magnifies round-off and the coupling of this mode to others: `1/|sin wh|` beyond a quarter turn, else 1.
     /// Tens announce a resonance, and from 1,000 on the scheme refuses the step size.
     pub condition: f64,
+}
+
+impl StepMode {
+    /// Distance of the phase from the nearest `kπ`, `k ≥ 1`, where the ends of a step do not determine the mode between them; infinite for a
+    /// hyperbolic mode.
+    pub fn to_resonance(&self) -> f64 {
+        if self.squared_frequency < 0.0 { f64::INFINITY } else { to_multiple_of_pi(self.phase) }
+    }
 }
 
 /// The one-step map of a [`MatrixEvi`] for a scene.

@@ -22,7 +22,7 @@ mod simulation;
 #[cfg(feature = "std")]
 mod trajectory;
 
-pub use crate::newton::{Fallbacks, Statistics, Tally};
+pub use crate::newton::{Diagnostics, Fallbacks, Statistics, Tally, Worst};
 #[cfg(feature = "std")]
 pub use checkpoint::{Checkpoint, ResumeError};
 pub use compensated::{Compensable, CompensableStep, Compensated, CompensatedStep};

@@ -10,6 +10,7 @@ use crate::linear::{Factorization, constraint_index, largest_magnitude};
 use crate::mechanics::{ImplicitStep, StepSolution, StepStart};
 use crate::memory::memory;
 use crate::newton::{self, Converged, Tally};
+use crate::scalar::Scalar;
 use crate::system::MechanicalSystem;
 
 /// After a correction `r` below the root of this, its matrix is good for one more. What Newton leaves of `r` is about `r²`, its matrix then
@@ -137,6 +138,7 @@ where
     let mut corrections = 0;
     for fresh in 0..FRESH {
         let (mut update, kkt) = equations.linearize(start, &mut solution);
+        tally.see_matrix(|| kkt.conditioning());
         let factors = kkt.factor_unscaled()?;
         factors.solve(&mut update);
         subtract(&mut solution, &update);
@@ -148,6 +150,7 @@ where
             }
         }
         let mut length = squared_length::<S>(&weights, |i| update[i]);
+        tally.see_correction(corrections, || Scalar::sqrt(length));
         // Written so that a NaN does not contract.
         let contracts = length <= SLOWEST * previous;
         if !contracts {
@@ -163,6 +166,7 @@ where
             kick_after(equations, start, &mut solution, &residual, &update);
             corrections += 1;
             let last = squared_length::<S>(&weights, |i| update[i]);
+            tally.see_correction(corrections, || Scalar::sqrt(last));
             if newton::squares_predict_round_off(last, length) {
                 tally.count_corrections(corrections);
                 return Some(solution);
@@ -238,6 +242,7 @@ pub(super) fn iterate<S: MechanicalSystem, E: ImplicitStep<S>>(
     let iteration = newton::iterate(|correction| {
         let (mut update, kkt) = equations.linearize(start, &mut solution);
         constraint_residual = largest_magnitude(update.as_ref()[S::N_COORDINATES..].iter().copied());
+        tally.see_matrix(|| kkt.conditioning());
         let kkt = E::factor(kkt).map_err(|matrix| IterationFailure::Singular { correction, matrix })?;
         smallest_pivot_ratio = smallest_pivot_ratio.min(kkt.pivot_ratio());
         if kkt.is_fallback() {
@@ -245,7 +250,9 @@ pub(super) fn iterate<S: MechanicalSystem, E: ImplicitStep<S>>(
         }
         kkt.solve(&mut update);
         subtract(&mut solution, &update);
-        Ok(kkt.relative_length(|i| update[i], |i| start.q[i].abs() + solution.difference[i].abs()))
+        let length = kkt.relative_length(|i| update[i], |i| start.q[i].abs() + solution.difference[i].abs());
+        tally.see_correction(correction, || length);
+        Ok(length)
     });
     match iteration {
         Ok(Converged { corrections }) => {

@@ -146,6 +146,7 @@ impl<S: MechanicalSystem, M: OneStep<S>, T: Tally> Run<S, M, T> {
         if S::N_INPUTS > 0 {
             self.check_inputs()?;
         }
+        self.tally.begin_step(self.steps);
         self.map.advance(&mut self.state, &mut self.tally)?;
         self.steps += 1;
         // A product, since a sum of 1e6 step sizes loses six digits.

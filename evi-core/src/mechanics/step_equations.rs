@@ -74,6 +74,11 @@ impl<S: MechanicalSystem, T: InterpolationTable, const K: usize> DiscreteLagrang
         action
     }
 
+    /// The rule that samples the Lagrangian.
+    pub(crate) const fn quadrature(&self) -> &Quadrature<K> {
+        &self.quadrature
+    }
+
     /// Calls `see` for the numbers that tell this action from another of its type: those of the rule, and of the curves, which are affine in
     /// the ends of a step.
     pub(crate) fn for_each_number(&self, mut see: impl FnMut(f64)) {

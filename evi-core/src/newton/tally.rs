@@ -1,5 +1,6 @@
 //! What happens inside steps, counted.
 
+use crate::linear::Conditioning;
 use crate::memory::memory;
 
 /// What is counted under the steps of a run. A step tells it what happens, as it happens; what a tally does not count costs
@@ -22,6 +23,31 @@ pub trait Tally {
     /// A pivot of the scene's own elimination was round-off, and the pivoted dense solve has taken its place.
     #[inline(always)]
     fn count_fallback(&mut self) {}
+
+    /// A run begins a step; so many have been taken before.
+    #[inline(always)]
+    fn begin_step(&mut self, step: u64) {
+        let _ = step;
+    }
+
+    /// Equations of a step are solved with a matrix, whose `conditioning` is computed when it is called.
+    #[inline(always)]
+    fn see_matrix(&mut self, conditioning: impl FnOnce() -> Conditioning) {
+        drop(conditioning);
+    }
+
+    /// Equations of a step are solved with a matrix of which no more is known than the ratio of its smallest pivot to its largest.
+    #[inline(always)]
+    fn see_pivot_ratio(&mut self, pivot_ratio: f64) {
+        let _ = pivot_ratio;
+    }
+
+    /// Newton's iteration makes its correction `number`, counted from 1, of the relative `length` that is computed when it is called.
+    #[inline(always)]
+    fn see_correction(&mut self, number: usize, length: impl FnOnce() -> f64) {
+        let _ = number;
+        drop(length);
+    }
 }
 
 /// Counts nothing.

@@ -188,6 +188,7 @@ impl NewtonStorage {
                 .factor(&mut self.entries)
                 .map_err(|matrix| IterationFailure::Singular { correction, matrix })?;
             smallest_pivot_ratio = smallest_pivot_ratio.min(self.factors.pivot_ratio());
+            tally.see_pivot_ratio(self.factors.pivot_ratio());
             apply_scale(&mut self.residual);
             self.factors.solve(&self.entries, &mut self.residual);
             apply_scale(&mut self.residual);
@@ -203,7 +204,9 @@ impl NewtonStorage {
                 length = largest_magnitude([length, in_units(&update[..n])]);
                 reach = reach.max(in_units(points.differences[a].as_ref()));
             }
-            Ok(relative(length, reach))
+            let length = relative(length, reach);
+            tally.see_correction(correction, || length);
+            Ok(length)
         });
         match iteration {
             Ok(Converged { corrections }) => {

@@ -41,6 +41,8 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'_, S, F, R>
     ) -> Result<Landing<S, R::Sum>, StepError> {
         let impulse = Array::from_fn(|c| predicted[c] + correction.impulse[c]);
         let scale = self.scale(&q);
+        tally.see_correction(1, || relative_length::<S>(&first, &scale));
+        tally.see_correction(CHORDS, || relative_length::<S>(&second, &scale));
         if is_round_off_next::<S>(&second, &first, &scale) {
             return self.landing(q, impulse, CHORDS, tally);
         }
@@ -102,7 +104,9 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'_, S, F, R>
             move_by::<S, _>(&mut q, &correction.moved);
             impulse = Array::from_fn(|c| impulse[c] + correction.impulse[c]);
             let is_last = is_round_off_next::<S>(&residual, &previous, &scale);
-            match progress.record(relative_length::<S>(&residual, &scale), is_last) {
+            let length = relative_length::<S>(&residual, &scale);
+            tally.see_correction(corrections + progress.corrections() + 1, || length);
+            match progress.record(length, is_last) {
                 Ok(true) => return self.landing(q, impulse, corrections + progress.corrections(), tally),
                 Ok(false) => previous = residual,
                 Err(failure) => {
