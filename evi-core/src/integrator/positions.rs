@@ -136,6 +136,7 @@ where
     let mut weights = S::PerCoordinate::<f64>::from_fn(|_| 0.0);
     let mut previous = f64::INFINITY;
     let mut corrections = 0;
+    tally.begin_iteration();
     for fresh in 0..FRESH {
         let (mut update, kkt) = equations.linearize(start, &mut solution);
         tally.see_matrix(|| kkt.conditioning());
@@ -150,7 +151,7 @@ where
             }
         }
         let mut length = squared_length::<S>(&weights, |i| update[i]);
-        tally.see_correction(corrections, || Scalar::sqrt(length));
+        tally.see_correction(|| Scalar::sqrt(length));
         // Written so that a NaN does not contract.
         let contracts = length <= SLOWEST * previous;
         if !contracts {
@@ -166,7 +167,7 @@ where
             kick_after(equations, start, &mut solution, &residual, &update);
             corrections += 1;
             let last = squared_length::<S>(&weights, |i| update[i]);
-            tally.see_correction(corrections, || Scalar::sqrt(last));
+            tally.see_correction(|| Scalar::sqrt(last));
             if newton::squares_predict_round_off(last, length) {
                 tally.count_corrections(corrections);
                 return Some(solution);
@@ -239,6 +240,7 @@ pub(super) fn iterate<S: MechanicalSystem, E: ImplicitStep<S>>(
     let mut solution = begun_at::<S>(difference);
     let mut constraint_residual = 0.0;
     let mut smallest_pivot_ratio = 1.0_f64;
+    tally.begin_iteration();
     let iteration = newton::iterate(|correction| {
         let (mut update, kkt) = equations.linearize(start, &mut solution);
         constraint_residual = largest_magnitude(update.as_ref()[S::N_COORDINATES..].iter().copied());
@@ -251,7 +253,7 @@ pub(super) fn iterate<S: MechanicalSystem, E: ImplicitStep<S>>(
         kkt.solve(&mut update);
         subtract(&mut solution, &update);
         let length = kkt.relative_length(|i| update[i], |i| start.q[i].abs() + solution.difference[i].abs());
-        tally.see_correction(correction, || length);
+        tally.see_correction(|| length);
         Ok(length)
     });
     match iteration {

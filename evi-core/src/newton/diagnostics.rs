@@ -88,7 +88,7 @@ fn keep(worst: &mut Option<Worst>, value: f64, step: u64, is_worse: impl Fn(f64,
 
 impl Tally for Diagnostics {
     fn begin_step(&mut self, step: u64) {
-        (self.step, self.last_correction) = (step, 0.0);
+        self.step = step;
     }
 
     fn see_matrix(&mut self, conditioning: impl FnOnce() -> Conditioning) {
@@ -101,11 +101,15 @@ impl Tally for Diagnostics {
         keep(&mut self.pivot_ratio, pivot_ratio, self.step, |new, old| new < old);
     }
 
-    fn see_correction(&mut self, number: usize, length: impl FnOnce() -> f64) {
+    fn begin_iteration(&mut self) {
+        self.last_correction = 0.0;
+    }
+
+    fn see_correction(&mut self, length: impl FnOnce() -> f64) {
         let length = length();
         // Below, corrections are noise. Written so that a NaN counts.
         let is_round_off = length <= CHORD_ROUND_OFF;
-        if number > 1 && !is_round_off && self.last_correction > 0.0 {
+        if !is_round_off && self.last_correction > 0.0 {
             keep(&mut self.contraction, length / self.last_correction, self.step, |new, old| new > old);
         }
         self.last_correction = length;

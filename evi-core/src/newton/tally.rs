@@ -33,7 +33,7 @@ pub trait Tally {
     /// Equations of a step are solved with a matrix, whose `conditioning` is computed when it is called.
     #[inline(always)]
     fn see_matrix(&mut self, conditioning: impl FnOnce() -> Conditioning) {
-        drop(conditioning);
+        let _ = conditioning;
     }
 
     /// Equations of a step are solved with a matrix of which no more is known than the ratio of its smallest pivot to its largest.
@@ -42,11 +42,14 @@ pub trait Tally {
         let _ = pivot_ratio;
     }
 
-    /// Newton's iteration makes its correction `number`, counted from 1, of the relative `length` that is computed when it is called.
+    /// Newton's iteration begins, or begins anew.
     #[inline(always)]
-    fn see_correction(&mut self, number: usize, length: impl FnOnce() -> f64) {
-        let _ = number;
-        drop(length);
+    fn begin_iteration(&mut self) {}
+
+    /// Newton's iteration makes a correction of the relative `length` that is computed when it is called.
+    #[inline(always)]
+    fn see_correction(&mut self, length: impl FnOnce() -> f64) {
+        let _ = length;
     }
 }
 

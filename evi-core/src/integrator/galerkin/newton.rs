@@ -172,6 +172,7 @@ impl NewtonStorage {
         let in_units = |x: &[f64]| length_in_units(x, scale.as_ref());
         let mut constraint_residual = 0.0;
         let mut smallest_pivot_ratio = 1.0_f64;
+        tally.begin_iteration();
         let iteration = newton::iterate(|correction| {
             constraint_residual = action.linearize(state, points, &mut self.residual, &mut self.entries);
             for (col, column) in self.entries.chunks_exact_mut(self.residual.len()).enumerate() {
@@ -205,7 +206,7 @@ impl NewtonStorage {
                 reach = reach.max(in_units(points.differences[a].as_ref()));
             }
             let length = relative(length, reach);
-            tally.see_correction(correction, || length);
+            tally.see_correction(|| length);
             Ok(length)
         });
         match iteration {

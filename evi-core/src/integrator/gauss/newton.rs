@@ -57,6 +57,7 @@ impl<S: MechanicalSystem, const K: usize> GaussNewton<S, K> {
         }
         let h = self.tables.weights.sum().abs();
         let mut smallest_pivot_ratio = 1.0_f64;
+        tally.begin_iteration();
         let iteration = newton::iterate(|correction| {
             self.linearize(mechanics, start);
             self.factors
@@ -75,7 +76,7 @@ impl<S: MechanicalSystem, const K: usize> GaussNewton<S, K> {
                 reach = largest_magnitude([reach, h * in_units(velocities)]);
             }
             let length = relative(length, reach);
-            tally.see_correction(correction, || length);
+            tally.see_correction(|| length);
             Ok(length)
         });
         match iteration {
