@@ -33,8 +33,8 @@ pub struct Worst {
 /// let diagnostics = run.tally();
 /// // One constraint depends on no other.
 /// assert_eq!(diagnostics.condition().expect("a constraint").value, 1.0);
-/// // The first step begins without a past, those after it from a prediction.
-/// assert_eq!(diagnostics.contraction().expect("several corrections").step, 0);
+/// // The worst iteration is one of the first steps, which have no past that the next one could be predicted from.
+/// assert!(diagnostics.contraction().expect("several corrections").step < 4);
 /// assert!(diagnostics.counts().corrections < 200, "less than two a step");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
