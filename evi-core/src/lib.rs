@@ -30,7 +30,7 @@
 //!
 //! # Layers
 //!
-//! [`mod@array`], [`scalar`], [`system`] and [`scheme`] stand at the bottom; above them `newton` and [`linear`], then
+//! [`mod@array`], [`scalar`], [`memory`], [`system`] and [`scheme`] stand at the bottom; above them `newton` and [`linear`], then
 //! [`mechanics`] (energies, projections, the equations of one step), then [`integrator`] (one-step maps and runs),
 //! and beside the integrators [`baseline`], [`generic`], [`comparison`], [`report`] and [`watch`]. Imports point downwards.
 //!

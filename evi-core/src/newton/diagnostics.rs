@@ -58,7 +58,7 @@ impl Diagnostics {
 
     /// Largest condition `‖A‖₁ ‖A⁻¹‖₁` of a matrix: of the equations for positions and multipliers together, `G M⁻¹ Gᵀ` where positions are eliminated,
     /// those of the projection at the end of a step; each in units of its unknowns. `None` where no step had a matrix. Infinite if one was
-    /// singular. Constraints that are nearly dependent show here: the condition is the inverse of the squared angle between them.
+    /// singular. Constraints that are nearly dependent show here: two at the angle `α`, in the metric of the mass matrix, as about `4/α²`.
     pub const fn condition(&self) -> Option<Worst> {
         self.condition
     }
