@@ -126,6 +126,7 @@ pub enum SchemeError {
         coordinates: usize,
     },
     /// There are no nodes for so many intervals.
+    #[cfg(feature = "generic")]
     #[error("a Galerkin integrator has 1 to {MOST_INTERVALS} intervals, not {intervals}")]
     Intervals {
         /// Number of intervals.
