@@ -18,9 +18,16 @@ pub(crate) fn write(checkpoint: &Checkpoint, path: &Path) -> io::Result<()> {
 }
 
 /// The checkpoint in the file, if there is one.
+///
+/// # Errors
+/// [`ErrorKind::InvalidData`] for a file that holds no whole checkpoint. Whether its numbers are those that were written is found when a simulation
+/// resumes it.
 pub(crate) fn read(path: &Path) -> io::Result<Option<Checkpoint>> {
     match fs::read(path) {
-        Ok(contents) => Ok(Some(serde_json::from_slice(&contents)?)),
+        Ok(contents) => serde_json::from_slice(&contents).map(Some).map_err(|error| {
+            let message = format!("{} is no whole checkpoint: {error}", path.display());
+            io::Error::new(ErrorKind::InvalidData, message)
+        }),
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
         Err(error) => Err(error),
     }

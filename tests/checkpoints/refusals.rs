@@ -1,8 +1,12 @@
 //! Checkpoints that a simulation does not go on from, each with its reason.
 
+use std::path::Path;
+
 use evi_core::integrator::Statistics;
 use evi_core::prelude::*;
 use evi_examples::{DoublePendulum, Pendulum};
+
+use crate::file;
 
 const DOUBLE: DoublePendulum = DoublePendulum { m1: 1.3, m2: 0.7, l1: 0.9, l2: 1.1, g: 9.81 };
 
@@ -102,7 +106,14 @@ fn json_is_exact_and_damage_is_found() {
         }
     }
     println!("{} digits: {damaged} found by the checksum, {unreadable} not readable", digits.len());
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("cut_off_{}.json", std::process::id()));
+    assert!(file::read(&path).unwrap().is_none());
+    file::write(&checkpoint, &path).unwrap();
+    assert_eq!(file::read(&path).unwrap(), Some(checkpoint));
     for length in [0, 1, json.len() / 2, json.len() - 1] {
-        assert!(serde_json::from_str::<Checkpoint>(&json[..length]).is_err());
+        std::fs::write(&path, &json[..length]).unwrap();
+        let error = file::read(&path).unwrap_err();
+        assert!(error.to_string().contains("is no whole checkpoint: EOF while parsing"), "{error}");
     }
+    std::fs::remove_file(&path).unwrap();
 }
