@@ -6,8 +6,12 @@
 //! A map lists its memory once, by the macro `memory!`, which takes it apart into fields, all of them: a field that is added does not compile
 //! until somebody has said what becomes of it.
 
+mod digest;
+
 use crate::array::Array;
 use crate::scalar::{LANES, Lanes};
+
+pub(crate) use self::digest::Digest;
 
 /// A part of a run that steps change besides the state: predictions from the past, lost digits, counters.
 ///
@@ -194,34 +198,6 @@ impl<'a> Recall<'a> {
     /// A number that the steps of a run share: it is there already. See [`Record::fixed`].
     pub fn fixed(&mut self, number: f64) {
         let _ = number;
-    }
-}
-
-/// The 64-bit FNV-1a hash of words (Fowler, Noll, Vo; IETF draft `draft-eastlake-fnv`), byte by byte: every change of a single byte changes it. Against
-/// accidents, not against intent.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Digest(u64);
-
-impl Default for Digest {
-    fn default() -> Self {
-        Self(0xcbf2_9ce4_8422_2325)
-    }
-}
-
-impl Digest {
-    pub(crate) fn add(&mut self, word: u64) {
-        self.add_bytes(&word.to_le_bytes());
-    }
-
-    pub(crate) fn add_bytes(&mut self, bytes: &[u8]) {
-        for byte in bytes {
-            self.0 = (self.0 ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
-        }
-    }
-
-    #[cfg(feature = "std")]
-    pub(crate) const fn value(&self) -> u64 {
-        self.0
     }
 }
 
