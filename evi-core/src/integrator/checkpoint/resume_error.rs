@@ -73,7 +73,8 @@ pub enum ResumeError {
     /// The scheme is of the same kind, but has other nodes, frequencies or matrices.
     #[error("the scheme has other numbers (nodes, frequencies, matrices) than that of the checkpoint")]
     OtherScheme,
-    /// What happened inside the steps was counted by another tally; see [`Simulation::resume_with`].
+    /// What happened inside the steps was counted by another tally; see
+    /// [`Simulation::resume_with`](crate::integrator::Simulation::resume_with).
     #[error("the run of the checkpoint has the tally `{checkpoint}`, to be resumed with `{resumed}`")]
     OtherTally {
         /// That of the checkpoint.
