@@ -176,7 +176,7 @@ impl Limits {
                 return Some(Stopped::HiddenConstraint { t, constraint, residual, budget });
             }
         }
-        // A clone of the run may have gone back behind the start.
+        // A run that was resumed may stand before the one that the limits were made for.
         let steps = run.steps().saturating_sub(self.start_steps);
         if self.steps.is_some_and(|budget| steps >= budget) {
             return Some(Stopped::Steps { steps });
