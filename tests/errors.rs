@@ -225,18 +225,19 @@ fn a_constraint_without_gradient_is_singular() {
     check_equal(error, StartError::Projection(ProjectionError::Singular(singular)));
 }
 
-/// Redundant constraints are legal to write, and the motion is determined; only the multipliers are not. The
-/// dense elimination of today sees a singular matrix. A solve of least norm would run this scene: then this
-/// test is wrong.
+/// The motion is determined, the multipliers are not: `tests/redundant.rs` integrates such scenes, where that is stated.
 #[test]
-fn a_constraint_that_is_written_twice_is_singular_today() {
-    let error = start_error(HeldTwice { m: 1.0 }, Evi::midpoint(0.01), [1.0, 0.0], [0.0; 2]);
-    let StartError::Projection(ProjectionError::Singular(SingularMatrix { pivot_ratio })) = error else {
-        panic!("{error:?}");
-    };
-    assert!(pivot_ratio < 1e-15, "{pivot_ratio:e}");
-    let error = start_error(HeldTwice { m: 1.0 }, Rk4::new(0.01), [1.0, 0.0], [0.0; 2]);
-    assert_error!(error, StartError::Projection(ProjectionError::Singular(_)));
+fn a_constraint_that_is_written_twice_is_refused_by_name() {
+    for error in [
+        start_error(HeldTwice { m: 1.0 }, Evi::midpoint(0.01), [1.0, 0.0], [0.0; 2]),
+        start_error(HeldTwice { m: 1.0 }, Rk4::new(0.01), [1.0, 0.0], [0.0; 2]),
+    ] {
+        assert_error!(
+            error,
+            StartError::DependentConstraints { rank: 1, constraints: 2, largest_dropped, .. } if largest_dropped < 1e-15
+        );
+        check_text(&error, &["of 2 constraints 1", "`again`", "constraints_of_rank::<1>()"]);
+    }
 }
 
 #[test]

@@ -1,8 +1,8 @@
 //! Linear solves of a step: in, a square matrix by rows; out, factors that solve for right-hand sides.
 //!
 //! [`Factorization`] is the contract between the integrators and a scene's own solvers: closed forms for one or two
-//! rows, the elimination that the derive emits for the scene's pattern ([`Guarded`]), and the pivoted dense one for
-//! every pattern ([`DenseLu`]).
+//! rows, the elimination that the derive emits for the scene's pattern ([`Guarded`]), the pivoted dense one for
+//! every pattern ([`DenseLu`]), and one for constraints of a stated rank ([`NullSpace`]).
 
 mod closed_form;
 mod dense;
@@ -12,7 +12,10 @@ mod in_place;
 mod kkt;
 #[cfg(feature = "std")]
 mod lane_ldl;
+mod null_space;
+pub(crate) mod orthonormal;
 mod pivoted;
+mod singular_values;
 mod symmetric_eigen;
 mod triangular;
 
@@ -28,7 +31,9 @@ pub(crate) use kkt::reciprocal_power_of_two;
 pub(crate) use kkt::{FactoredKkt, Kkt, constraint_index, unknowns};
 #[cfg(feature = "std")]
 pub(crate) use lane_ldl::{LaneGram, LaneMass};
+pub use null_space::NullSpace;
 pub(crate) use pivoted::Pivoted;
+pub(crate) use singular_values::singular_values;
 pub(crate) use symmetric_eigen::SymmetricEigen;
 pub(crate) use triangular::Cholesky;
 

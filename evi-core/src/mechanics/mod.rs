@@ -5,6 +5,7 @@
 //! quadratic part is integrated exactly), and steps that are linear in the momentum, but for their constraints: those of
 //! quadratic Lagrangians (`FoldedStep`), of the trapezoidal rule (`LeapfrogStep`), and impulse methods (`ImpulseStep`).
 
+mod constraint_rank;
 mod constraints;
 mod coordinate_matrix;
 mod coupling;
@@ -32,6 +33,8 @@ mod separable_action;
 mod state;
 mod step_equations;
 
+pub(crate) use constraint_rank::CONSISTENCY;
+pub use constraint_rank::{ConstraintRank, ConstraintSet};
 pub(crate) use constraints::{Directions, NOTHING};
 pub(crate) use coordinate_matrix::{CoordinateMatrix, Rows};
 pub(crate) use coupling::{AsScene, Coupling, Full};
