@@ -17,6 +17,7 @@ mod multipliers;
 mod of_rank;
 mod positions;
 mod rank_check;
+mod rescue;
 mod run;
 mod simulation;
 #[cfg(feature = "std")]
@@ -36,6 +37,7 @@ pub use matrix_evi::{
     LinearisedAlong, LinearisedAt, MatrixEvi, MatrixEviStep, QuadraticModel, StepMode, Stiffness,
 };
 pub use of_rank::OfRank;
+pub use rescue::{Rescued, RescuedStep, Rescues};
 pub use run::Run;
 #[cfg(feature = "generic")]
 pub(crate) use run::steps_between;
