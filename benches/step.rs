@@ -4,7 +4,7 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use evi_core::baseline::{Rattle, Rk4};
-use evi_core::generic::{GenericEvi, GenericSystem};
+use evi_core::generic::{GenericEvi, GenericScheme, GenericSystem};
 use evi_core::prelude::*;
 use evi_examples::{DoublePendulum, SphericalPendulum, Start, StiffSpringPendulum};
 

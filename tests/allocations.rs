@@ -12,7 +12,7 @@ use std::cell::Cell;
 use std::hint::black_box;
 
 use evi_core::baseline::{GeneralizedAlpha, ImplicitMidpoint, Rattle, Rk4, Shake};
-use evi_core::generic::{GenericEvi, GenericSystem};
+use evi_core::generic::{GenericEvi, GenericGalerkin, GenericScheme, GenericSystem};
 use evi_core::prelude::*;
 use evi_examples::{
     DoublePendulum, DrivenPendulum, FermiPastaUlam, HarmonicOscillator, Pendulum, SphericalPendulum, Start,
@@ -240,7 +240,7 @@ fn no_step_with_forces_allocates() {
 
 /// Takes 1,000 steps of the generic path and expects that none allocates.
 #[track_caller]
-fn check_generic<S: GenericSystem, const N: usize>(system: S, scheme: GenericEvi, start: Start<N>) {
+fn check_generic<S: GenericSystem, const N: usize>(system: S, scheme: impl GenericScheme, start: Start<N>) {
     let mut run = scheme.start(system, &start.q, &start.v).expect("the start is consistent");
     assert_eq!(allocations(|| assert!(run.advance_to(10.0).is_ok())), 0);
     assert_eq!(run.steps(), 1_000);
@@ -257,6 +257,7 @@ fn no_step_of_the_generic_path_allocates() {
         DrivenPendulum::STANDARD.horizontal(),
     );
     check_generic(SPHERICAL, GenericEvi::simpson(0.01).frequency(OMEGA), SPHERICAL.one_radian());
+    check_generic(DOUBLE, GenericGalerkin::new(3, 0.01), mild());
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use evi_core::array::Array;
 use evi_core::baseline::{Dense, GeneralizedAlpha, ImplicitMidpoint, Rattle, Shake};
-use evi_core::generic::GenericEvi;
+use evi_core::generic::{GenericEvi, GenericScheme};
 use evi_core::integrator::Statistics;
 use evi_core::mechanics::Mechanics;
 use evi_core::prelude::*;

@@ -1,7 +1,7 @@
 //! The generic path: the specialised path's trajectories to round-off, systems of run-time size, errors.
 
 use evi_core::comparison::Solver;
-use evi_core::generic::{GenericEvi, GenericRun, GenericSystem};
+use evi_core::generic::{GenericEvi, GenericGalerkin, GenericRun, GenericScheme, GenericSystem};
 use evi_core::integrator::ConstraintLabel;
 use evi_core::mechanics::ProjectionError;
 use evi_core::prelude::*;
@@ -30,7 +30,7 @@ const ALLOWED: f64 = 128.0;
 /// largest of its kind so far.
 fn difference<S, F, const N: usize>(
     system: S,
-    (specialised, generic): (F, GenericEvi),
+    (specialised, generic): (F, impl GenericScheme),
     Start { q, v }: Start<N>,
 ) -> f64
 where
@@ -122,6 +122,35 @@ where
     for (scheme, difference) in differences {
         assert!(difference <= ALLOWED, "{scheme}: {difference:.0} ε, allowed {ALLOWED}");
     }
+}
+
+/// Compares Galerkin members on polynomials and on mixed curves, found by other iterations on other matrices.
+#[track_caller]
+fn check_galerkin<S, const N: usize>(system: S, start: Start<N>)
+where
+    S: MechanicalSystem<PerCoordinate<f64> = [f64; N], PerCoordinate<Frequency> = [Frequency; N]>
+        + GenericSystem
+        + Copy,
+{
+    let h = 4.0 * H;
+    let (fourth, third) = (Galerkin::<4>::new(h), Galerkin::<3>::new(h).frequency(OMEGA));
+    let (generic_fourth, generic_third) =
+        (GenericGalerkin::new(4, h), GenericGalerkin::new(3, h).frequency(OMEGA));
+    for (scheme, difference) in [
+        ("polynomials", difference(system, (fourth, generic_fourth), start)),
+        ("mixed curves", difference(system, (third, generic_third), start)),
+    ] {
+        println!("{scheme}: {difference:.0} ε");
+        assert!(difference <= ALLOWED, "{scheme}: {difference:.0} ε, allowed {ALLOWED}");
+    }
+}
+
+#[test]
+fn galerkin_members_agree_with_constraints_forces_and_a_mass_that_depends_on_positions() {
+    let charged = ChargedSphericalPendulum::STANDARD;
+    check_galerkin(charged, charged.one_radian());
+    check_galerkin(PushedDumbbell::STANDARD, PushedDumbbell::STANDARD.turning());
+    check_galerkin(MotorisedDoublePendulum::STANDARD, DoublePendulumInAngles::MODERATE);
 }
 
 #[test]

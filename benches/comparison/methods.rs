@@ -2,7 +2,7 @@
 
 use evi_core::baseline::{GeneralizedAlpha, ImplicitMidpoint, Rattle, Rk4, Shake};
 use evi_core::comparison::{Failure, Solver};
-use evi_core::generic::GenericEvi;
+use evi_core::generic::{GenericEvi, GenericGalerkin, GenericScheme};
 use evi_core::prelude::*;
 use evi_examples::Scene;
 
@@ -145,6 +145,15 @@ pub fn all<S: Scene>() -> Vec<Method<S>> {
             let scheme = GenericEvi::midpoint(h).composed(Composition::kahan_li_8());
             Ok(Box::new(scheme.start(s.clone(), q.as_ref(), v.as_ref())?))
         }),
+        generic(
+            "galerkin_8_generic",
+            16,
+            "the member of 9 stages by Newton's iteration on dense matrices",
+            |s: &S, h| {
+                let (q, v) = s.standard_motion();
+                Ok(Box::new(GenericGalerkin::new(8, h).start(s.clone(), q.as_ref(), v.as_ref())?))
+            },
+        ),
         external(
             "dop853",
             8,

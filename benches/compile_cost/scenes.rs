@@ -129,7 +129,8 @@ const RUN: &str = r#"
 
 /// A step of the generic path, compared with the other.
 const COMPARISON: &str = r#"
-    let mut other = evi_core::generic::GenericEvi::midpoint(0.01).start(scene, &q, &v).expect("the start is consistent");
+    use evi_core::generic::{GenericEvi, GenericScheme};
+    let mut other = GenericEvi::midpoint(0.01).start(scene, &q, &v).expect("the start is consistent");
     other.advance().expect("the step is small");
     // Momenta, for the step begins at rest: positions would agree in the digits that have not moved.
     let pairs = || std::iter::zip(state.p().iter(), other.p());

@@ -30,7 +30,7 @@ pub(crate) enum Piece {
 pub(crate) struct Finished {
     pub(crate) piece: Piece,
     pub(crate) rows: Vec<Row>,
-    pub(crate) speedup: Option<Speedup>,
+    pub(crate) speedups: Vec<Speedup>,
     pub(crate) long_run: Option<LongRun>,
 }
 
@@ -159,7 +159,7 @@ mod tests {
 
     fn finished(scene: &str) -> Finished {
         let piece = Piece::Speedup { scene: scene.into() };
-        Finished { piece, rows: Vec::new(), speedup: None, long_run: None }
+        Finished { piece, rows: Vec::new(), speedups: Vec::new(), long_run: None }
     }
 
     /// A journal with two finished pieces, closed.
@@ -199,7 +199,7 @@ mod tests {
     fn a_corrupt_line_is_named_and_nothing_is_lost() {
         let folder = written("corrupt");
         let file = folder.join("unfinished.jsonl");
-        let text = fs::read_to_string(&file).expect("the file").replacen("speedup", "speed", 1);
+        let text = fs::read_to_string(&file).expect("the file").replacen("speedups", "speeds", 1);
         fs::write(&file, &text).expect("the file");
         let Err(error) = Journal::open(&folder, true, Machine::present()) else { panic!("it was opened") };
         assert!(matches!(error, JournalError::Corrupt { line: 2, .. }), "{error}");

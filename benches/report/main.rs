@@ -153,7 +153,7 @@ fn gather(plan: &Plan<'_>, quick: bool, journal: &Journal) -> Results {
         quick,
         errors: verdicts::ERRORS,
         orders,
-        speedups: finished().filter_map(|piece| piece.speedup.clone()).collect(),
+        speedups: finished().flat_map(|piece| piece.speedups.clone()).collect(),
         long_runs: finished().filter_map(|piece| piece.long_run.clone()).collect(),
         scenes,
         methods,

@@ -12,8 +12,8 @@ pub(crate) struct Fitted {
     pub(crate) nominal: u32,
     /// Slope of `log ‖q − q*‖` over `log h`, by least squares.
     pub(crate) order: f64,
-    /// Number of step sizes in the fit.
-    pub(crate) points: usize,
+    /// Of the slope.
+    pub(crate) standard_error: f64,
     /// Largest and smallest step size of the fit.
     pub(crate) from_h: f64,
     pub(crate) to_h: f64,
@@ -21,49 +21,55 @@ pub(crate) struct Fitted {
 
 /// Errors above this fraction of the configuration are coarse.
 const COARSE: f64 = 1e-2;
-/// Errors within this factor of the smallest one that the method reaches may be round-off.
-const ABOVE_ROUND_OFF: f64 = 1e2;
-/// The smallest error of a method is round-off if it is below this fraction of the configuration.
-const ROUND_OFF: f64 = 1e-9;
-/// The finest points, so many, lie in the asymptotic range if any do.
+/// Number of neighbouring step sizes that a slope is fitted to.
 const POINTS: usize = 6;
+/// The asymptotic range: there the standard error of the slope is no more than this fraction of it.
+const SETTLED: f64 = 0.02;
 
-/// The order of a method with a step size, if at least three points lie between coarse errors and round-off.
+/// The order of a method with a step size, from the straightest stretch of [`POINTS`] step sizes below coarse errors, if its slope has settled
+/// there: what round-off or the next terms of the error bend has none.
 ///
 /// `rows` are the runs of one method on one scene; `size` is the length of the configuration.
 pub(crate) fn fit(rows: &[&Row], size: f64) -> Option<Fitted> {
-    let mut points: Vec<(f64, f64)> =
-        rows.iter().filter_map(|row| row.h.zip(row.position_error)).filter(|point| point.1 > 0.0).collect();
+    let mut points: Vec<(f64, f64)> = rows.iter().filter_map(|row| row.h.zip(row.position_error)).collect();
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let smallest = points.iter().map(|point| point.1).fold(f64::INFINITY, f64::min);
-    let floor = if smallest < ROUND_OFF * size { ABOVE_ROUND_OFF * smallest } else { 0.0 };
-    // From the finest on, the first unbroken stretch.
-    let asymptotic: Vec<(f64, f64)> = points
-        .into_iter()
-        .skip_while(|point| point.1 < floor)
-        .take_while(|point| point.1 < COARSE * size)
-        .take(POINTS)
-        .collect();
-    let [(to_h, _), .., (from_h, _)] = asymptotic[..] else { return None };
-    let logarithms: Vec<(f64, f64)> = asymptotic.iter().map(|(h, e)| (h.ln(), e.ln())).collect();
-    (logarithms.len() >= 3).then(|| Fitted {
+    let (stretch, line) = points
+        .windows(POINTS)
+        .filter(|stretch| stretch.iter().all(|point| 0.0 < point.1 && point.1 < COARSE * size))
+        .map(|stretch| (stretch, Line::through(stretch)))
+        .min_by(|a, b| a.1.relative_error().total_cmp(&b.1.relative_error()))?;
+    (line.relative_error() <= SETTLED).then(|| Fitted {
         scene: rows[0].scene.clone(),
         method: rows[0].method.clone(),
         nominal: rows[0].order,
-        order: slope(&logarithms),
-        points: logarithms.len(),
-        from_h,
-        to_h,
+        order: line.slope,
+        standard_error: line.standard_error,
+        from_h: stretch[POINTS - 1].0,
+        to_h: stretch[0].0,
     })
 }
 
-/// Least-squares slope.
-fn slope(points: &[(f64, f64)]) -> f64 {
-    let n = points.len() as f64;
-    let (mean_x, mean_y) =
-        (points.iter().map(|p| p.0).sum::<f64>() / n, points.iter().map(|p| p.1).sum::<f64>() / n);
-    let covariance: f64 = points.iter().map(|p| (p.0 - mean_x) * (p.1 - mean_y)).sum();
-    covariance / points.iter().map(|p| (p.0 - mean_x).powi(2)).sum::<f64>()
+/// A line through logarithms, by least squares.
+struct Line {
+    slope: f64,
+    standard_error: f64,
+}
+
+impl Line {
+    fn through(points: &[(f64, f64)]) -> Self {
+        let n = points.len() as f64;
+        let logarithms = || points.iter().map(|(x, y)| (x.ln(), y.ln()));
+        let mean_x = logarithms().map(|(x, _)| x).sum::<f64>() / n;
+        let mean_y = logarithms().map(|(_, y)| y).sum::<f64>() / n;
+        let variance: f64 = logarithms().map(|(x, _)| (x - mean_x).powi(2)).sum();
+        let slope = logarithms().map(|(x, y)| (x - mean_x) * (y - mean_y)).sum::<f64>() / variance;
+        let squares: f64 = logarithms().map(|(x, y)| (y - mean_y - slope * (x - mean_x)).powi(2)).sum();
+        Self { slope, standard_error: (squares / (n - 2.0) / variance).sqrt() }
+    }
+
+    fn relative_error(&self) -> f64 {
+        self.standard_error / self.slope.abs()
+    }
 }
 
 #[cfg(test)]
@@ -91,8 +97,14 @@ mod tests {
 
     #[test]
     fn coarse_errors_and_round_off_are_left_out() {
-        let order = fitted(|h| if h > 0.1 { 1.0 } else { 3.0 * h.powi(6) + 1e-14 }).expect("three points");
-        assert!((order - 6.0).abs() < 0.05, "{order}");
+        let error = |h: f64| if h > 0.1 { 1.0 } else { 3.0 * h.powi(3) + 1e-14 * (1e6 * h).sin().abs() };
+        let order = fitted(error).expect("six points");
+        assert!((order - 3.0).abs() < 0.05, "{order}");
+    }
+
+    #[test]
+    fn a_slope_that_does_not_settle_is_no_order() {
+        assert_eq!(fitted(|h| 1e-3 * h.powi(4) * (2.0 + (3.0 * h.ln()).sin())), None);
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! What the specialised code of a scene gains over the generic path: the midpoint rule on both, with the same steps.
+//! What the specialised code of a scene gains over the generic path: the same method on both, with the same steps.
 
 use std::process::Command;
 use std::time::Instant;
@@ -7,33 +7,41 @@ use evi_benches::comparison::scenes::AnyScene;
 
 use crate::results::{Row, Speedup};
 
-const SPECIALISED: &str = "midpoint";
-const GENERIC: &str = "midpoint_generic";
+/// Methods by their names on both paths, with the error that each is used for as a fraction of the configuration.
+const PAIRS: [([&str; 2], f64); 2] =
+    [(["midpoint", "midpoint_generic"], 1e-3), (["galerkin_8", "galerkin_8_generic"], 1e-9)];
 const REPETITIONS: usize = 9;
 /// Steps of a counted run; a second one takes twice as many.
 const COUNTED_STEPS: u64 = 40;
 
-/// An error of this fraction of the configuration is what the midpoint rule is used for.
-const USUAL_ERROR: f64 = 1e-3;
+/// Of every pair of methods, at the step size with about its usual error, of those that both paths have reached the horizon with.
+pub(crate) fn speedups(scene: &dyn AnyScene, rows: &[Row], quick: bool) -> Vec<Speedup> {
+    PAIRS.iter().filter_map(|&(pair, usual_error)| speedup(scene, rows, pair, usual_error, quick)).collect()
+}
 
-/// At the step size with about the [usual error](USUAL_ERROR), of those that both paths have reached the horizon with.
-pub(crate) fn speedup(scene: &dyn AnyScene, rows: &[Row], quick: bool) -> Option<Speedup> {
+fn speedup(
+    scene: &dyn AnyScene,
+    rows: &[Row],
+    [specialised, generic]: [&str; 2],
+    usual_error: f64,
+    quick: bool,
+) -> Option<Speedup> {
     let errors = |method: &str| -> Vec<(f64, f64)> {
         rows.iter()
             .filter(|row| row.method == method)
             .filter_map(|row| row.h.zip(row.position_error))
             .collect()
     };
-    let generic = errors(GENERIC);
-    let usual = USUAL_ERROR * scene.facts().size;
-    let (h, _) = errors(SPECIALISED)
+    let generic_errors = errors(generic);
+    let usual = usual_error * scene.facts().size;
+    let (h, _) = errors(specialised)
         .into_iter()
-        .filter(|(h, _)| generic.iter().any(|(other, _)| other == h))
+        .filter(|(h, _)| generic_errors.iter().any(|(other, _)| other == h))
         .min_by(|a, b| (a.1 / usual).ln().abs().total_cmp(&(b.1 / usual).ln().abs()))?;
-    let (specialised, generic) = (number(scene, SPECIALISED)?, number(scene, GENERIC)?);
+    let numbers = [number(scene, specialised)?, number(scene, generic)?];
     let mut fastest = [f64::INFINITY; 2];
     for _ in 0..REPETITIONS {
-        for (fastest, method) in fastest.iter_mut().zip([specialised, generic]) {
+        for (fastest, method) in fastest.iter_mut().zip(numbers) {
             let mut solver = scene.start(method, h).ok()?;
             let clock = Instant::now();
             solver.advance_to(scene.facts().horizon).ok()?;
@@ -44,12 +52,12 @@ pub(crate) fn speedup(scene: &dyn AnyScene, rows: &[Row], quick: bool) -> Option
     let count = |method| if quick { None } else { instructions(name, method, h) };
     Some(Speedup {
         scene: name.into(),
-        method: SPECIALISED.into(),
+        method: specialised.into(),
         h,
         specialised_ns: fastest[0],
         generic_ns: fastest[1],
-        specialised_instructions: count(SPECIALISED),
-        generic_instructions: count(GENERIC),
+        specialised_instructions: count(specialised),
+        generic_instructions: count(generic),
     })
 }
 

@@ -17,7 +17,7 @@ use evi_benches::comparison::scenes::{AnyScene, SceneFacts};
 
 use crate::journal::{Finished, Journal, Piece};
 use crate::results::{LongRun, Row};
-use crate::speedup::speedup;
+use crate::speedup::speedups;
 
 /// How thorough the measurement is.
 #[derive(Clone, Copy)]
@@ -141,13 +141,14 @@ pub(crate) fn run(
         bar.set_message(text(piece));
         let left = budget.saturating_sub(begin.elapsed()) / (todo.len() - index) as u32;
         let work = Work { scene: *scene, thoroughness, left, interrupted: &interrupted };
-        let mut done = Finished { piece: piece.clone(), rows: Vec::new(), speedup: None, long_run: None };
+        let mut done =
+            Finished { piece: piece.clone(), rows: Vec::new(), speedups: Vec::new(), long_run: None };
         match (piece, method) {
             (Piece::Sweep { .. }, Some(method)) => done.rows = work.sweep(*method),
             (Piece::LongRun { .. }, Some(method)) => {
                 done.long_run = work.long_run(*method, &rows(journal, scene.facts().name));
             }
-            _ => done.speedup = speedup(*scene, &rows(journal, scene.facts().name), thoroughness.quick),
+            _ => done.speedups = speedups(*scene, &rows(journal, scene.facts().name), thoroughness.quick),
         }
         if interrupted.load(Ordering::Relaxed) {
             bar.abandon_with_message("interrupted; what is finished is kept");

@@ -35,9 +35,10 @@ pub(crate) fn print(results: &Results) {
                 (None, None, None) => println!("  not measured yet"),
             }
         }
-        if let Some(speedup) = results.speedups.iter().find(|speedup| speedup.scene == scene.name) {
+        for speedup in results.speedups.iter().filter(|speedup| speedup.scene == scene.name) {
             print!(
-                "specialised against generic: {:.0} times as fast",
+                "{} specialised against generic: {:.0} times as fast",
+                speedup.method,
                 speedup.generic_ns / speedup.specialised_ns
             );
             match speedup.generic_instructions.zip(speedup.specialised_instructions) {

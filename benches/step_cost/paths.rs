@@ -5,7 +5,7 @@ use evi_benches::hand_written::{
     HandWrittenSpringPendulum,
 };
 use evi_core::baseline::{Dense, Rattle, Rk4};
-use evi_core::generic::{GenericEvi, GenericRun, GenericSystem};
+use evi_core::generic::{GenericEvi, GenericRun, GenericScheme, GenericSystem};
 use evi_core::integrator::{Statistics, Tally};
 use evi_core::mechanics::Mechanics;
 use evi_core::prelude::*;

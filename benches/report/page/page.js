@@ -225,18 +225,18 @@ function table(title, head, rows) {
     element("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": title }, element("table", {}, element("thead", {}, element("tr", {}, ...heads)), body)));
 }
 
-/** Factors of the specialised over the generic path, one bar per scene. */
+/** Factors of the specialised over the generic path, one bar per scene and method. */
 function speedups() {
-  const bars = results.speedups.map((s) => ({ scene: s.scene, time: s.generic_ns / s.specialised_ns,
+  const bars = results.speedups.map((s) => ({ label: `${s.scene}, ${s.method}`, time: s.generic_ns / s.specialised_ns,
     instructions: s.specialised_instructions ? s.generic_instructions / s.specialised_instructions : null }));
   if (bars.length === 0) return element("p", {}, "Not measured.");
-  const row = 22, left = 170, width = 1000, height = bars.length * row + 20;
+  const row = 22, left = 250, width = 1000, height = bars.length * row + 20;
   const most = Math.max(...bars.flatMap((bar) => [bar.time, bar.instructions ?? 0]));
   const length = (value) => value / most * (width - left - 230);
-  const drawing = svg("svg", { viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": "Speed-up of the specialised over the generic path, by scene; the numbers stand beside the bars." });
+  const drawing = svg("svg", { viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": "Speed-up of the specialised over the generic path, by scene and method; the numbers stand beside the bars." });
   bars.forEach((bar, i) => {
     const y = 8 + i * row;
-    drawing.append(svg("text", { x: left - 8, y: y + 12, "text-anchor": "end" }, bar.scene),
+    drawing.append(svg("text", { x: left - 8, y: y + 12, "text-anchor": "end" }, bar.label),
       svg("rect", { x: left, y, width: length(bar.time), height: 8, fill: "var(--c0)" }));
     if (bar.instructions !== null) drawing.append(svg("rect", { x: left, y: y + 8, width: length(bar.instructions), height: 6, fill: "var(--c1)" }));
     drawing.append(svg("text", { x: left + length(Math.max(bar.time, bar.instructions ?? 0)) + 8, y: y + 12 },

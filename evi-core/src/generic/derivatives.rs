@@ -52,6 +52,8 @@ pub(super) struct Derivatives<S> {
     mixed_residuals: Vec<Mixed>,
     time_q: Vec<Dual64>,
     time_residuals: Vec<Dual64>,
+    line_q: Vec<HyperDual64>,
+    line_residuals: Vec<HyperDual64>,
     /// Empty for a system without forces, as the two below.
     pub(super) force: Vec<f64>,
     pub(super) gradient_force: Vec<Gradient>,
@@ -76,6 +78,8 @@ impl<S: GenericSystem> Derivatives<S> {
             mixed_residuals: vec![Mixed::from_re(0.0); m],
             time_q: vec![Dual64::from_re(0.0); n],
             time_residuals: vec![Dual64::from_re(0.0); m],
+            line_q: vec![HyperDual64::from_re(0.0); n],
+            line_residuals: vec![HyperDual64::from_re(0.0); m],
         }
     }
 
@@ -169,12 +173,13 @@ impl<S: GenericSystem> Derivatives<S> {
     }
 
     /// Overwrites `curvatures` with `γ = vᵀ φ_qq v + 2 φ_qt v + φ_tt`, the second derivative along `(t, q) += (1, v) δ`.
-    pub(super) fn constraint_curvatures(&self, at: Point<'_>, curvatures: &mut [f64]) {
+    pub(super) fn constraint_curvatures(&mut self, at: Point<'_>, curvatures: &mut [f64]) {
         let line = |value: f64, rate: f64| HyperDual64::new(value, rate, rate, 0.0);
-        let q: Vec<_> = at.q.iter().zip(at.v).map(|(&q, &v)| line(q, v)).collect();
-        let mut residuals = vec![line(0.0, 0.0); curvatures.len()];
-        self.system.constraints(line(at.t, 1.0), &q, &mut residuals);
-        for (curvature, residual) in curvatures.iter_mut().zip(residuals) {
+        for i in 0..self.n_coordinates {
+            self.line_q[i] = line(at.q[i], at.v[i]);
+        }
+        self.system.constraints(line(at.t, 1.0), &self.line_q, &mut self.line_residuals);
+        for (curvature, residual) in curvatures.iter_mut().zip(&self.line_residuals) {
             *curvature = residual.eps1eps2;
         }
     }

@@ -79,6 +79,11 @@ impl Kkt {
         largest_magnitude(p.iter().take(self.n_coordinates).zip(&self.scale).map(|(p, scale)| p * scale))
     }
 
+    /// The diagonal `D` of the scaled matrix `D K D`, coordinates before constraints; after [`factor`](Self::factor).
+    pub(super) fn scale(&self) -> &[f64] {
+        &self.scale
+    }
+
     /// Smallest pivot over largest.
     pub(super) const fn pivot_ratio(&self) -> f64 {
         self.factors.pivot_ratio()

@@ -2,7 +2,7 @@
 //!
 //! In: a [`GenericSystem`], emitted by the derive for every scene (the user's expressions in the user's order, without
 //! any simplification) or written by hand where sizes are known only when the program runs. Out, behind the feature
-//! `generic`: `GenericRun`, the exponential variational integrator on dense matrices of run-time size, with first
+//! `generic`: `GenericRun`, exponential and Galerkin variational integrators on dense matrices of run-time size, with first
 //! and second derivatives by dual numbers. It shares nothing with the symbolic compiler: the oracle of its tests, the
 //! baseline that the specialised path is compared with, and what a user has who writes no derive. The stopping rule of
 //! Newton's iteration, the interpolants and the errors are those of the specialised path and stand below.
@@ -14,7 +14,17 @@ mod chunk;
 #[cfg(feature = "generic")]
 mod derivatives;
 #[cfg(feature = "generic")]
+mod evi;
+#[cfg(feature = "generic")]
+mod evi_step;
+#[cfg(feature = "generic")]
 mod forces;
+#[cfg(feature = "generic")]
+mod galerkin;
+#[cfg(feature = "generic")]
+mod galerkin_node;
+#[cfg(feature = "generic")]
+mod galerkin_step;
 #[cfg(feature = "generic")]
 mod kkt;
 #[cfg(feature = "generic")]
@@ -24,14 +34,22 @@ mod run;
 #[cfg(feature = "generic")]
 mod scheme;
 #[cfg(feature = "generic")]
+mod state;
+#[cfg(feature = "generic")]
 mod step;
+#[cfg(feature = "generic")]
+mod workspace;
 
 #[cfg(feature = "generic")]
 pub use acceleration::GenericAcceleration;
 #[cfg(feature = "generic")]
+pub use evi::GenericEvi;
+#[cfg(feature = "generic")]
+pub use galerkin::GenericGalerkin;
+#[cfg(feature = "generic")]
 pub use run::GenericRun;
 #[cfg(feature = "generic")]
-pub use scheme::GenericEvi;
+pub use scheme::GenericScheme;
 
 use crate::scalar::Scalar;
 

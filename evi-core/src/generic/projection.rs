@@ -5,11 +5,12 @@
 
 use super::GenericSystem;
 use super::derivatives::Point;
-use super::step::{GenericState, GenericStep};
+use super::state::GenericState;
+use super::workspace::Workspace;
 use crate::mechanics::{ProjectionError, relative};
 use crate::newton;
 
-impl<S: GenericSystem> GenericStep<S> {
+impl<S: GenericSystem> Workspace<S> {
     /// Removes from the momentum of `state` the impulse that makes the motion leave the constraints, and overwrites its
     /// velocity, the first guess, and its Jacobian.
     ///

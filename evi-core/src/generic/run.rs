@@ -6,15 +6,17 @@ use num_dual::Dual64;
 
 use super::GenericSystem;
 use super::acceleration::GenericAcceleration;
-use super::scheme::GenericEvi;
-use super::step::{GenericState, GenericStep};
+use super::scheme::GenericScheme;
+use super::state::GenericState;
+use super::step::GenericStep;
+use super::workspace::Workspace;
 use crate::comparison::{Failure, Solver};
 use crate::integrator::{CONSISTENCY, ConstraintLabel, StartError, StepError, steps_between};
 use crate::linear::SingularMatrix;
 use crate::mechanics::relative;
 use crate::newton::Statistics;
 
-/// A system, the one-step map of a [`GenericEvi`] for it, and the state that it has reached.
+/// A system, the one-step map of a [`GenericScheme`] for it, and the state that it has reached.
 ///
 /// A step allocates nothing beside what the system's own functions allocate; one that fails leaves the run at the last
 /// state that was reached. As a [`Solver`] it stands beside the runs of other methods.
@@ -30,33 +32,38 @@ pub struct GenericRun<S> {
 
 impl<S: GenericSystem> GenericRun<S> {
     pub(super) fn start_consistent(
-        scheme: &GenericEvi,
+        scheme: &(impl GenericScheme + ?Sized),
         system: S,
         start: (f64, &[f64], &[f64]),
     ) -> Result<Self, StartError> {
         let mut run = Self::at(scheme, system, start)?;
         run.check_position()?;
         run.check_velocity()?;
-        run.step.project_velocity(&mut run.state)?;
+        run.step.work.project_velocity(&mut run.state)?;
         Ok(run)
     }
 
     pub(super) fn start_projected(
-        scheme: &GenericEvi,
+        scheme: &(impl GenericScheme + ?Sized),
         system: S,
         start: (f64, &[f64], &[f64]),
     ) -> Result<Self, StartError> {
         let mut run = Self::at(scheme, system, start)?;
-        run.step.project_configuration(&mut run.state)?;
-        run.step.project_velocity(&mut run.state)?;
+        run.step.work.project_configuration(&mut run.state)?;
+        run.step.work.project_velocity(&mut run.state)?;
         Ok(run)
     }
 
     /// A run whose momentum is still to be found.
-    fn at(scheme: &GenericEvi, system: S, (t, q, v): (f64, &[f64], &[f64])) -> Result<Self, StartError> {
+    fn at(
+        scheme: &(impl GenericScheme + ?Sized),
+        system: S,
+        (t, q, v): (f64, &[f64], &[f64]),
+    ) -> Result<Self, StartError> {
         let n = system.n_coordinates();
         let (mut state, next) = (GenericState::zero(&system), GenericState::zero(&system));
-        let step = GenericStep::new(system, scheme.stages(n)?);
+        let equations = scheme.prepare(&system)?;
+        let step = GenericStep { work: Workspace::new(system), equations };
         for (quantity, values) in [("position", q), ("velocity", v)] {
             if values.len() != n {
                 return Err(StartError::Length { quantity, expected: n, found: values.len() });
@@ -78,8 +85,8 @@ impl<S: GenericSystem> GenericRun<S> {
     /// Compares `φ` with `‖G‖ ‖q‖`, what a displacement of the size of the configuration would make of it.
     fn check_position(&mut self) -> Result<(), StartError> {
         let Self { step, state: GenericState { t, q, jacobian, .. }, .. } = self;
-        let residuals = &mut step.time_rates;
-        step.derivatives.constraints(*t, q, residuals, jacobian);
+        let Workspace { derivatives, time_rates: residuals, .. } = &mut step.work;
+        derivatives.constraints(*t, q, residuals, jacobian);
         for (c, &residual) in residuals.iter().enumerate() {
             let allowed: f64 = (0..q.len()).map(|i| CONSISTENCY * (jacobian[(c, i)] * q[i]).abs()).sum();
             // Compared this way round, so that a NaN fails.
@@ -106,7 +113,7 @@ impl<S: GenericSystem> GenericRun<S> {
 
     /// The system that moves.
     pub const fn system(&self) -> &S {
-        self.step.derivatives.system()
+        self.step.work.derivatives.system()
     }
 
     /// Step size.
@@ -151,7 +158,7 @@ impl<S: GenericSystem> GenericRun<S> {
 
     /// Newton's corrections under the steps taken. Every solve is the pivoted dense one: no fallbacks.
     pub const fn statistics(&self) -> Statistics {
-        self.step.statistics
+        self.step.work.statistics
     }
 
     /// Energy `H = v·∂L/∂v − L` of the state reached.
@@ -192,7 +199,7 @@ impl<S: GenericSystem> GenericRun<S> {
     /// # Errors
     /// [`SingularMatrix`] where mass matrix and constraints do not determine the acceleration.
     pub fn acceleration(&mut self) -> Result<GenericAcceleration, SingularMatrix> {
-        self.step.acceleration(&self.state)
+        self.step.work.acceleration(&self.state)
     }
 
     /// Takes one step.

@@ -122,6 +122,12 @@ pub enum SchemeError {
         /// Number of coordinates of the system.
         coordinates: usize,
     },
+    /// There are no nodes for so many intervals.
+    #[error("a Galerkin integrator has 1 to {MOST_INTERVALS} intervals, not {intervals}")]
+    Intervals {
+        /// Number of intervals.
+        intervals: usize,
+    },
     /// A reference configuration is not finite.
     #[error("the reference of coordinate {coordinate} is not finite: {value}")]
     Reference {

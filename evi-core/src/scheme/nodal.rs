@@ -59,6 +59,15 @@ impl<const S: usize> NodalTable<S> {
         if node == 0 { &self.first } else { &self.others[node - 1] }
     }
 
+    /// The table of `frequency` for steps of size `h`; without a frequency that of polynomials.
+    pub(crate) fn new(frequency: Frequency, coordinate: usize, h: f64) -> Result<Self, SchemeError> {
+        if frequency == Frequency::ZERO {
+            Ok(Self::polynomial())
+        } else {
+            Self::mixed(frequency, coordinate, h)
+        }
+    }
+
     fn polynomial() -> Self {
         let nodes = LobattoNodes::<S>::new();
         Self::from_matrix(&nodes.differentiation(), |_| 0.0)

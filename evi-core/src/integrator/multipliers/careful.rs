@@ -1,0 +1,154 @@
+//! Newton's iteration on the multipliers where corrections with one matrix do not suffice: a fresh matrix for each.
+
+use super::Landing;
+use super::attempt::{Attempt, CHORDS};
+use super::history::History;
+use super::span::{DriftGram, Span, move_by};
+use crate::array::Array;
+use crate::integrator::{IterationFailure, StepError};
+use crate::linear::{Factorization, largest_magnitude};
+use crate::mechanics::State;
+use crate::mechanics::{KickDriftKick, Lost, RoundOff};
+use crate::newton::{self, Progress, Tally};
+use crate::system::MechanicalSystem;
+
+impl<S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'_, S, F, R> {
+    /// Ends a step for which the corrections with one matrix did not suffice.
+    #[inline(never)]
+    pub(super) fn land_slowly(
+        self,
+        attempt: Option<Attempt<S, R::Sum>>,
+        momentum: R::Sum,
+        history: &mut History<S>,
+        state: &mut State<S>,
+        tally: &mut impl Tally,
+    ) -> Result<[Lost<S, R>; 2], StepError> {
+        let landing = match attempt {
+            Some(attempt) if attempt.is_trusted => self.continue_from(attempt, &history.predicted, tally)?,
+            _ => self.solve_anew(tally)?,
+        };
+        let expected = history.expected_end_impulse(&landing.impulse);
+        let momentum = self.pulled(momentum, &landing.impulse);
+        self.land(landing, &expected, momentum, history, state, tally)
+    }
+
+    /// Newton's iteration after corrections with one matrix.
+    fn continue_from(
+        &self,
+        Attempt { q, correction, residuals: [first, second], .. }: Attempt<S, R::Sum>,
+        predicted: &S::PerConstraint<f64>,
+        tally: &mut impl Tally,
+    ) -> Result<Landing<S, R::Sum>, StepError> {
+        let impulse = Array::from_fn(|c| predicted[c] + correction.impulse[c]);
+        let scale = self.scale(&q);
+        if is_round_off_next::<S>(&second, &first, &scale) {
+            return self.landing(q, impulse, CHORDS, tally);
+        }
+        let slowest = newton::SLOWEST_CHORD * relative_length::<S>(&first, &scale);
+        // Written so that a NaN does not contract.
+        let contracts = relative_length::<S>(&second, &scale) <= slowest.max(newton::CHORD_ROUND_OFF);
+        if contracts && let Ok(landing) = self.iterate(CHORDS, second, q, impulse, tally) {
+            return Ok(landing);
+        }
+        self.solve_anew(tally)
+    }
+
+    /// Newton's iteration without the history.
+    #[cold]
+    #[inline(never)]
+    fn solve_anew(&self, tally: &mut impl Tally) -> Result<Landing<S, R::Sum>, StepError> {
+        let none = S::PerConstraint::<f64>::from_fn(|_| 0.0);
+        self.iterate(0, none.clone(), self.end(&none), none, tally)
+    }
+
+    /// The landing at `q`, where `φ = 0`.
+    fn landing(
+        &self,
+        q: R::Sum,
+        impulse: S::PerConstraint<f64>,
+        corrections: usize,
+        tally: &mut impl Tally,
+    ) -> Result<Landing<S, R::Sum>, StepError> {
+        let (_, jacobian) = self.constraints_at(&q);
+        match self.free.legendre().factor_gram(self.mechanics, &jacobian, tally) {
+            Ok(gram) => Ok(Landing { q, impulse, gram, corrections }),
+            Err(cause) => Err(StepError::Projection { t: self.t_end, cause: cause.into() }),
+        }
+    }
+
+    /// Newton's iteration from `q = q₁(ℓ)`, with a fresh matrix for every correction. `previous` is the residual that the
+    /// last of the `corrections` so far was made for, 0 if there was none.
+    fn iterate(
+        &self,
+        corrections: usize,
+        mut previous: S::PerConstraint<f64>,
+        mut q: R::Sum,
+        mut impulse: S::PerConstraint<f64>,
+        tally: &mut impl Tally,
+    ) -> Result<Landing<S, R::Sum>, StepError> {
+        let mut progress = Progress::after(relative_length::<S>(&previous, &self.scale(&q)));
+        loop {
+            let (residual, jacobian) = self.constraints_at(&q);
+            let matrix = self.mechanics.gram_matrix::<F::Coupling>(&jacobian, &self.directions);
+            let gram = DriftGram::<S, F>::factor(&matrix).map_err(|matrix| {
+                let failure = IterationFailure::Singular { correction: progress.corrections() + 1, matrix };
+                self.failed(failure, &residual, 0.0)
+            })?;
+            if gram.is_fallback() {
+                tally.count_fallback();
+            }
+            let scale = self.scale(&q);
+            let correction = self.correction(&gram, &residual);
+            move_by::<S, _>(&mut q, &correction.moved);
+            impulse = Array::from_fn(|c| impulse[c] + correction.impulse[c]);
+            let is_last = is_round_off_next::<S>(&residual, &previous, &scale);
+            match progress.record(relative_length::<S>(&residual, &scale), is_last) {
+                Ok(true) => return self.landing(q, impulse, corrections + progress.corrections(), tally),
+                Ok(false) => previous = residual,
+                Err(failure) => {
+                    let (residual, _) = self.constraints_at(&q);
+                    return Err(self.failed(failure.into(), &residual, gram.pivot_ratio()));
+                }
+            }
+        }
+    }
+
+    /// The numbers that explain a failure.
+    #[cold]
+    fn failed(
+        &self,
+        failure: IterationFailure,
+        residual: &S::PerConstraint<f64>,
+        pivot_ratio: f64,
+    ) -> StepError {
+        failure.at(self.t_start, largest_magnitude(residual.as_ref().iter().copied()), pivot_ratio)
+    }
+}
+
+/// Whether the correction for `residual` is the last, constraint by constraint: the fast convergence of one must not pass for
+/// that of all.
+#[inline(always)]
+pub(super) fn is_round_off_next<S: MechanicalSystem>(
+    residual: &S::PerConstraint<f64>,
+    previous: &S::PerConstraint<f64>,
+    scale: &S::PerConstraint<f64>,
+) -> bool {
+    let mut all = true;
+    for c in 0..S::N_CONSTRAINTS {
+        all &= newton::predicts_round_off(residual[c], previous[c], scale[c]);
+    }
+    all
+}
+
+/// Sum of the residuals relative to their scales, in which a NaN survives.
+fn relative_length<S: MechanicalSystem>(
+    residual: &S::PerConstraint<f64>,
+    scale: &S::PerConstraint<f64>,
+) -> f64 {
+    let mut length = 0.0;
+    for c in 0..S::N_CONSTRAINTS {
+        // Exactly 0 is no residual on any scale.
+        length += if residual[c] == 0.0 { 0.0 } else { residual[c].abs() / scale[c] };
+    }
+    length
+}

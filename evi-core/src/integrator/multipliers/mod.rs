@@ -1,0 +1,128 @@
+//! A kick, a drift and a kick with constraints: Newton's iteration on the multipliers alone.
+//!
+//! In: a [`KickDriftKick`], whose end point is affine in the impulse `ℓ = Λ/h` of the constraint force. Out: the `ℓ` for which
+//! `φ(q₁(ℓ)) = 0`, and the state there. From the impulse that the previous steps predict, one or two corrections with one
+//! matrix `G₁ D G₀ᵀ` do, as a rule; where they do not, Newton's iteration goes on with a fresh matrix for each.
+
+mod attempt;
+mod careful;
+mod history;
+mod span;
+
+use core::borrow::Borrow;
+
+use self::attempt::Attempt;
+use self::history::History;
+use self::span::{Span, move_by};
+use super::StepError;
+use crate::array::Array;
+use crate::mechanics::{KickDriftKick, Lost, Mechanics, RoundOff, State, Sum};
+use crate::newton::Tally;
+use crate::system::MechanicalSystem;
+
+/// A step without its constraint forces, with the impulses that it has needed so far.
+pub(crate) struct MultiplierStep<S: MechanicalSystem, F> {
+    free: F,
+    history: History<S>,
+}
+
+/// The end of a step on the constraints.
+struct Landing<S: MechanicalSystem, Q> {
+    q: Q,
+    impulse: S::PerConstraint<f64>,
+    /// Factors of `G M⁻¹ Gᵀ` there.
+    gram: S::GramFactors,
+    /// Number of corrections that led there.
+    corrections: usize,
+}
+
+impl<S: MechanicalSystem, F: KickDriftKick<S>> MultiplierStep<S, F> {
+    pub(crate) fn new(free: F) -> Self {
+        Self { free, history: History::none() }
+    }
+
+    /// Overwrites `state` with the state one step of size `h` later, and returns what its positions and momenta have lost.
+    ///
+    /// What follows where two corrections do not suffice takes copies, and ends the step by itself: on the way that most steps
+    /// take no value lies in memory for its sake.
+    #[inline(always)]
+    pub(crate) fn advance<R: RoundOff<S>>(
+        &mut self,
+        mechanics: &Mechanics<S>,
+        h: f64,
+        state: &mut State<S>,
+        round_off: R,
+        tally: &mut impl Tally,
+    ) -> Result<[Lost<S, R>; 2], StepError> {
+        let Self { free, history } = self;
+        let t = state.t + h;
+        let momentum = round_off.momentum(&state.p);
+        let kicked = free.kicked_at_start(mechanics, state.t, &state.q, momentum.terms());
+        let momentum = momentum.with(kicked);
+        let half_way = momentum.value().borrow().clone();
+        let free_difference = free.drift().times(|i| half_way[i]);
+        if S::N_CONSTRAINTS == 0 {
+            let (q, lost_q) = round_off.position(&state.q).plus(&free_difference).split();
+            let kicked = free.kicked_at_end(mechanics, t, &q, momentum.terms());
+            let (p, lost_p) = momentum.with(kicked).split();
+            state.replace(t, q, free.legendre().velocity(&p), p)?;
+            return Ok([lost_q, lost_p]);
+        }
+        let (_, jacobian) = S::constraint_derivatives(&mechanics.constants, state.t, &state.q);
+        let directions = mechanics.constraint_directions(&jacobian, free.drift());
+        let span = Span {
+            mechanics,
+            free: &*free,
+            t_start: state.t,
+            t_end: t,
+            start: state.q.clone(),
+            round_off,
+            free_difference,
+            jacobian,
+            directions,
+        };
+        let Some(attempt) = span.attempt(&history.predicted, tally) else {
+            return span.land_slowly(None, momentum, history, state, tally);
+        };
+        if attempt.is_trusted
+            && attempt.is_solved
+            && let Ok(gram) = free.legendre().factor_gram(mechanics, &attempt.jacobian, tally)
+        {
+            let Attempt { q, correction, corrections, .. } = attempt;
+            let mut momentum = span.pulled(momentum, &history.predicted);
+            move_by::<S, _>(&mut momentum, &correction.pull);
+            // As good a guess as that from the impulse itself, and known at the start of the step.
+            let expected = history.expected_end_impulse(&history.predicted);
+            let impulse = Array::from_fn(|c| history.predicted[c] + correction.impulse[c]);
+            let landing = Landing { q, impulse, gram, corrections };
+            return span.land(landing, &expected, momentum, history, state, tally);
+        }
+        span.land_slowly(Some(attempt), momentum, history, state, tally)
+    }
+}
+
+impl<S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'_, S, F, R> {
+    /// Ends the step: overwrites `state` with the end on the constraints.
+    #[inline(always)]
+    fn land(
+        self,
+        Landing { q: position, impulse, gram, corrections }: Landing<S, R::Sum>,
+        expected: &S::PerConstraint<f64>,
+        momentum: R::Sum,
+        history: &mut History<S>,
+        state: &mut State<S>,
+        tally: &mut impl Tally,
+    ) -> Result<[Lost<S, R>; 2], StepError> {
+        let Self { mechanics, free, t_end: t, .. } = self;
+        tally.count_corrections(corrections);
+        let (q, lost_q) = position.split();
+        let kicked = free.kicked_at_end(mechanics, t, &q, momentum.terms());
+        let momentum = momentum.with(kicked);
+        let (_, jacobian) = S::constraint_derivatives(&mechanics.constants, t, &q);
+        let (v, momentum) = free.legendre().project(mechanics, &gram, &jacobian, expected, momentum);
+        let (p, lost_p) = momentum.split();
+        state.replace(t, q, v, p)?;
+        history.remember(impulse);
+        Ok([lost_q, lost_p])
+    }
+}
