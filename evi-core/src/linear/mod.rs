@@ -5,7 +5,6 @@
 //! every pattern ([`DenseLu`]), and one for constraints of a stated rank ([`NullSpace`]).
 
 mod closed_form;
-mod dense;
 mod elimination;
 #[cfg(feature = "std")]
 mod in_place;
@@ -20,9 +19,6 @@ mod symmetric_eigen;
 mod triangular;
 
 pub use closed_form::{Inverse0, Inverse1, Inverse2};
-pub use dense::DenseLu;
-#[cfg(feature = "std")]
-pub(crate) use dense::checked_pivot_ratio;
 pub use elimination::{Elimination, Guarded, reciprocal_pivot};
 #[cfg(feature = "std")]
 pub(crate) use in_place::InPlaceLu;
@@ -32,7 +28,9 @@ pub(crate) use kkt::{FactoredKkt, Kkt, constraint_index, unknowns};
 #[cfg(feature = "std")]
 pub(crate) use lane_ldl::{LaneGram, LaneMass};
 pub use null_space::NullSpace;
-pub(crate) use pivoted::Pivoted;
+#[cfg(feature = "std")]
+pub(crate) use pivoted::checked_pivot_ratio;
+pub use pivoted::{DenseLu, Pivoted};
 pub(crate) use singular_values::singular_values;
 pub(crate) use symmetric_eigen::SymmetricEigen;
 pub(crate) use triangular::Cholesky;

@@ -76,7 +76,8 @@ impl<S: MechanicalSystem, const R: usize> RowSpace<S, R> {
         let mut position = S::PerCoordinate::<f64>::from_fn(|_| 0.0);
         let mut weights = S::PerConstraint::<f64>::from_fn(|_| 0.0);
         for row in 0..R {
-            let constraint = self.independent[row];
+            // An index that the optimiser sees is one.
+            let constraint = self.independent[row].min(S::N_CONSTRAINTS - 1);
             let known: f64 = (0..row).map(|k| self.coefficients[k][constraint] * weights[k]).sum();
             let rest = self.scale[constraint] * b(constraint) - known;
             weights[row] = rest / self.coefficients[row][constraint];
