@@ -26,6 +26,7 @@ fn no_path_to_a_panic_is_left_in_a_step() {
     assert!(steps.status.success(), "{}", String::from_utf8_lossy(&steps.stderr));
     let taken = Command::new(Path::new(TARGET).join("release").join("steps")).output().expect("it runs");
     let lines = String::from_utf8_lossy(&taken.stdout);
+    assert!(taken.status.success(), "{}", String::from_utf8_lossy(&taken.stderr));
     assert!(lines.lines().count() > 10 && lines.lines().all(|line| line == "true"), "steps fail: {lines}");
     // The link fails where a path is left: the build above proves what it is said to.
     let control = build("can-panic", "can-panic");

@@ -64,7 +64,8 @@ where
     S: MechanicalSystem<PerCoordinate<f64> = [f64; N]>,
     F: Scheme<S>,
 {
-    let run = Simulation::new(system, black_box(scheme)).start(start, [0.0; N]).expect("consistent");
+    let simulation = Simulation::new(system, black_box(scheme));
+    let run = simulation.start_projected(0.0, start, [0.0; N]).expect("near the constraints");
     println!("{}", step(&mut black_box(run.with_tally(()))));
 }
 

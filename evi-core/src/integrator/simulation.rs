@@ -7,8 +7,12 @@ use super::rank_check::{check_agreement, check_rank, explained};
 use super::{OneStep, Run, Scheme};
 use crate::array::Array;
 use crate::mechanics::{CONSISTENCY, ConstraintSet, Mechanics, ProjectionError, State, norm};
+use crate::scalar::Scalar;
 use crate::scheme::SchemeError;
 use crate::system::MechanicalSystem;
+
+/// Round-off of a momentum is that of its largest terms: four digits are left of it.
+const LARGEST_PHASE: f64 = 1e12;
 
 /// A scene and the scheme that integrates it.
 ///
@@ -55,6 +59,14 @@ pub enum StartError {
     /// The scheme defines no step.
     #[error(transparent)]
     Scheme(#[from] SchemeError),
+    /// A parameter that the equations name is not finite.
+    #[error("parameter `{name}` is not finite: {value}")]
+    Parameter {
+        /// The field of the struct.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+    },
     /// A number of the start, or the energy or the momentum there, is not finite.
     #[error("{quantity} {index} of the start is not finite: {value}")]
     NotFinite {
@@ -74,6 +86,18 @@ pub enum StartError {
         expected: usize,
         /// Number of values.
         found: usize,
+    },
+    /// The step size is so many times the time scale of the motion that nothing is left of momenta but round-off.
+    #[error(
+        "a step of {h:e} is {phase:e} times 1/ω of the fastest motion at the start: beyond {limit:e} momenta are round-off"
+    )]
+    Phase {
+        /// Step size.
+        h: f64,
+        /// `|h| ω`, where `ω²` is the largest entry of `M^(−½) ∂²L/∂q² M^(−½)`.
+        phase: f64,
+        /// The largest that is accepted.
+        limit: f64,
     },
     /// The position violates a constraint.
     #[error(
@@ -234,6 +258,7 @@ impl<S: MechanicalSystem, F: Scheme<S>> Simulation<S, F> {
         q: impl Into<S::PerCoordinate<f64>>,
         v: impl Into<S::PerCoordinate<f64>>,
     ) -> Result<Run<S, F::Step>, StartError> {
+        check_parameters(&self.system)?;
         let step = self.scheme.prepare(Mechanics::new(&self.system))?;
         let (q, v) = (q.into(), v.into());
         let mechanics = step.mechanics();
@@ -242,6 +267,7 @@ impl<S: MechanicalSystem, F: Scheme<S>> Simulation<S, F> {
         check_rank(mechanics, t, &q)?;
         check_velocity(mechanics, t, step.h(), &q, &v)?;
         let state = project_velocity(mechanics, t, q, v)?;
+        check_phase(mechanics, step.h(), &state)?;
         Ok(Run::new(step, state))
     }
 
@@ -255,6 +281,7 @@ impl<S: MechanicalSystem, F: Scheme<S>> Simulation<S, F> {
         q: impl Into<S::PerCoordinate<f64>>,
         v: impl Into<S::PerCoordinate<f64>>,
     ) -> Result<Run<S, F::Step>, StartError> {
+        check_parameters(&self.system)?;
         let step = self.scheme.prepare(Mechanics::new(&self.system))?;
         let (q, v) = (q.into(), v.into());
         let mechanics = step.mechanics();
@@ -264,6 +291,7 @@ impl<S: MechanicalSystem, F: Scheme<S>> Simulation<S, F> {
         check_agreement(mechanics, t, &q)?;
         check_rank(mechanics, t, &q)?;
         let state = project_velocity(mechanics, t, q, v)?;
+        check_phase(mechanics, step.h(), &state)?;
         Ok(Run::new(step, state))
     }
 }
@@ -284,6 +312,15 @@ fn project_velocity<S: MechanicalSystem>(
         ("momentum", projected.p.as_ref()),
     ])?;
     Ok(State { t, q, v: projected.v, p: projected.p, inputs: Array::from_fn(|_| 0.0) })
+}
+
+fn check_parameters<S: MechanicalSystem>(system: &S) -> Result<(), StartError> {
+    for (name, &value) in S::PARAMETERS.iter().zip(system.parameters().as_ref()) {
+        if !value.is_finite() {
+            return Err(StartError::Parameter { name, value });
+        }
+    }
+    Ok(())
 }
 
 fn check_finite<S: MechanicalSystem>(
@@ -307,6 +344,21 @@ fn refuse_what_is_not_finite(numbers: &[(&'static str, &[f64])]) -> Result<(), S
         if let Some(index) = values.iter().position(|value| !value.is_finite()) {
             return Err(StartError::NotFinite { quantity, index, value: values[index] });
         }
+    }
+    Ok(())
+}
+
+/// Refuses steps over which forces of the potential are so large that what cancels in a momentum leaves none of its digits: it is the sum of
+/// terms that are `|h| ω` times as large.
+fn check_phase<S: MechanicalSystem>(
+    mechanics: &Mechanics<S>,
+    h: f64,
+    state: &State<S>,
+) -> Result<(), StartError> {
+    let phase = Scalar::sqrt(mechanics.largest_squared_rate(state.t, &state.q, &state.v)) * h.abs();
+    // What is no number is found elsewhere, by its own name.
+    if phase > LARGEST_PHASE {
+        return Err(StartError::Phase { h, phase, limit: LARGEST_PHASE });
     }
     Ok(())
 }

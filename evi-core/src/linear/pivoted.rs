@@ -58,26 +58,29 @@ where
         let mut rows = matrix.clone();
         let mut exchanges = P::from_fn(|k| k);
         for k in 0..n {
-            let mut pivot = k;
+            let (mut pivot, mut largest) = (k, rows[k][k].abs());
             for row in k + 1..n {
-                if rows[row][k].abs() > rows[pivot.min(n - 1)][k].abs() {
-                    pivot = row;
+                let magnitude = rows[row][k].abs();
+                if magnitude > largest {
+                    (pivot, largest) = (row, magnitude);
                 }
             }
             exchanges[k] = pivot;
             swap(rows.as_mut(), k, pivot);
             let (above, below) = rows.as_mut().split_at_mut(k + 1);
-            let Some(pivot_row) = above.last() else { continue };
+            let Some([pivot, right @ ..]) = above.last().and_then(|row| row.as_ref().get(k..)) else {
+                continue;
+            };
             // Exact zero: nothing is left to eliminate in this column; the check of the pivots reports it.
-            if pivot_row[k] == 0.0 {
+            if *pivot == 0.0 {
                 continue;
             }
-            let inverse_pivot = 1.0 / pivot_row[k];
+            let inverse_pivot = 1.0 / pivot;
             for row in below {
-                let factor = row[k] * inverse_pivot;
-                row[k] = factor;
-                for col in k + 1..n {
-                    row[col] -= factor * pivot_row[col];
+                let Some([first, rest @ ..]) = row.as_mut().get_mut(k..) else { continue };
+                *first *= inverse_pivot;
+                for (entry, above) in rest.iter_mut().zip(right) {
+                    *entry -= *first * above;
                 }
             }
         }
@@ -114,7 +117,7 @@ where
 /// Exchanges two elements; both are there, which the optimiser need not find out.
 #[inline(always)]
 fn swap<X>(elements: &mut [X], i: usize, j: usize) {
-    if i < elements.len() && j < elements.len() {
+    if i != j && i < elements.len() && j < elements.len() {
         elements.swap(i, j);
     }
 }

@@ -123,6 +123,7 @@ pub enum SchemeError {
         coordinates: usize,
     },
     /// There are no nodes for so many intervals.
+    #[cfg(feature = "generic")]
     #[error("a Galerkin integrator has 1 to {MOST_INTERVALS} intervals, not {intervals}")]
     Intervals {
         /// Number of intervals.
@@ -247,6 +248,16 @@ pub enum LinearisationError {
         corrections: usize,
         /// Relative length of the last one.
         last_correction: f64,
+    },
+    /// A number of the configuration or the velocity is not finite.
+    #[error("{quantity} {index} to linearise at is not finite: {value}")]
+    Point {
+        /// `position` or `velocity`.
+        quantity: &'static str,
+        /// Index in its vector.
+        index: usize,
+        /// The value.
+        value: f64,
     },
     /// The configuration cannot be moved onto the constraints, or mass matrix and constraints do not determine the motion there.
     #[error(

@@ -60,6 +60,7 @@ impl<const S: usize> NodalTable<S> {
     }
 
     /// The table of `frequency` for steps of size `h`; without a frequency that of polynomials.
+    #[cfg(feature = "generic")]
     pub(crate) fn new(frequency: Frequency, coordinate: usize, h: f64) -> Result<Self, SchemeError> {
         if frequency == Frequency::ZERO {
             Ok(Self::polynomial())
