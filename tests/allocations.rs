@@ -14,7 +14,7 @@ use std::time::Duration;
 
 use evi_core::baseline::{GeneralizedAlpha, ImplicitMidpoint, Rattle, Rk4, Shake};
 use evi_core::generic::{GenericEvi, GenericGalerkin, GenericScheme, GenericSystem};
-use evi_core::integrator::Diagnostics;
+use evi_core::integrator::{Diagnostics, OfRank};
 use evi_core::prelude::*;
 use evi_core::watch::{EnergyDrift, Limits};
 use evi_examples::{
@@ -297,4 +297,18 @@ fn a_step_that_fails_does_not_allocate() {
     let allocations = allocations(|| failure = run.advance_to(10.0).err());
     assert_eq!(allocations, 0);
     assert!(matches!(failure, Some(StepError::NoSolution { .. })), "{failure:?}");
+}
+
+#[test]
+fn a_step_that_is_taken_in_parts_does_not_allocate() {
+    let scheme = Evi::simpson(0.1).frequency(9.81_f64.sqrt()).rescued::<6>();
+    let horizontal = DOUBLE.horizontal();
+    let mut run = Simulation::new(DOUBLE, scheme).start(horizontal.q, horizontal.v).unwrap();
+    assert_eq!(allocations(|| assert!(run.advance_to(5.0).is_ok())), 0);
+    assert!(run.map().rescues().steps > 0);
+}
+
+#[test]
+fn no_step_on_a_null_space_allocates() {
+    check(OfRank::<_, 2>(DOUBLE), Evi::midpoint(0.01), mild());
 }

@@ -121,6 +121,14 @@ fn inner_points() {
 }
 
 #[test]
+fn steps_in_parts() {
+    // From the horizontal so long that some have no solution as a whole.
+    let (past, counts) =
+        resumed(DOUBLE, Evi::simpson(0.1).frequency(2.4).rescued::<4>(), DOUBLE.horizontal());
+    assert!(past == Remembered && counts.rescued_steps > 0, "{counts:?}");
+}
+
+#[test]
 fn gauss_nodes() {
     check(ANGLES, Gauss::<4>::new(0.1), DoublePendulumInAngles::MODERATE, Remembered);
     check(ANGLES, Gauss::<4>::new(0.1).compensated(), DoublePendulumInAngles::MODERATE, Remembered);

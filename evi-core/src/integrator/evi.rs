@@ -4,6 +4,7 @@ use core::borrow::Borrow;
 
 use super::curves::check_soft_coordinates;
 use super::multipliers::MultiplierStep;
+use super::of_rank::check_dependent_constraints;
 use super::positions::{self, Guess, Sags};
 use super::{Compensable, CompensableStep, OneStep, Scheme, StepError, Symmetric};
 use crate::array::Array;
@@ -271,6 +272,7 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
             .project(t, &q, momentum, &solution, tally)
             .map_err(|cause| StepError::Projection { t, cause })?;
         let (p, lost_p) = momentum.split();
+        check_dependent_constraints(self.mechanics(), t, &q)?;
         state.replace(t, q, v, p)?;
         Ok((solution.difference, [lost_q, lost_p]))
     }

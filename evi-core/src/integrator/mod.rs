@@ -16,12 +16,17 @@ mod galerkin;
 mod gauss;
 mod matrix_evi;
 mod multipliers;
+mod of_rank;
 mod positions;
+mod rank_check;
+mod rescue;
 mod run;
 mod simulation;
 #[cfg(feature = "std")]
 mod trajectory;
 
+#[cfg(feature = "generic")]
+pub(crate) use crate::mechanics::CONSISTENCY;
 pub use crate::newton::{Diagnostics, Fallbacks, Statistics, Tally, Worst};
 #[cfg(feature = "std")]
 pub use checkpoint::{Checkpoint, ResumeError};
@@ -35,11 +40,11 @@ pub use gauss::{Gauss, GaussStep};
 pub use matrix_evi::{
     LinearisedAlong, LinearisedAt, MatrixEvi, MatrixEviStep, QuadraticModel, StepMode, Stiffness,
 };
+pub use of_rank::OfRank;
+pub use rescue::{Rescued, RescuedStep, Rescues};
 pub use run::Run;
 #[cfg(feature = "generic")]
 pub(crate) use run::steps_between;
-#[cfg(feature = "generic")]
-pub(crate) use simulation::CONSISTENCY;
 pub use simulation::{ConstraintLabel, Simulation, StartError};
 #[cfg(feature = "std")]
 pub use trajectory::{Interrupted, Trajectory};
@@ -144,6 +149,22 @@ pub enum StepError {
         target: f64,
         /// Step size.
         h: f64,
+    },
+    /// At the end of the step constraints contradict each other, of which some were stated to follow from the others
+    /// ([`OfRank`]).
+    #[error(
+        "constraints contradict each other at t = {t}: where as many hold as are independent, constraint {constraint} has the residual \
+         {residual:e}, allowed {allowed:e}"
+    )]
+    ContradictoryConstraints {
+        /// Time at the end of the step.
+        t: f64,
+        /// A constraint that does not hold.
+        constraint: ConstraintLabel,
+        /// Its residual.
+        residual: f64,
+        /// Largest residual that passes.
+        allowed: f64,
     },
     /// The end of the step is not finite.
     #[error("the state at t = {t} is not finite")]

@@ -7,9 +7,9 @@
 use super::{IterationFailure, StepError};
 use crate::array::Array;
 use crate::linear::{Factorization, constraint_index, largest_magnitude};
-use crate::mechanics::{ImplicitStep, StepSolution, StepStart};
+use crate::mechanics::{ImplicitStep, Mechanics, StepSolution, StepStart};
 use crate::memory::memory;
-use crate::newton::{self, Converged, Tally};
+use crate::newton::{self, Converged, NotConverged, Tally};
 use crate::scalar::Scalar;
 use crate::system::MechanicalSystem;
 
@@ -23,6 +23,11 @@ const SLOWEST: f64 = 0.25;
 const FRESH: usize = 6;
 /// A history is trusted that predicted the last step to an eighth, in squares.
 const TRUSTED: f64 = 1.0 / 64.0;
+/// Before its last correction, the root of `SHORT` long, an iteration has to be as near to the constraints.
+const NEAR: f64 = 1e-3;
+/// After the last one; constraints may add up terms a thousand times larger. Newton's iteration ends where corrections do, which is on the
+/// constraints unless their matrix has lost its digits.
+const MET: f64 = 1e-9;
 
 /// Where the iteration begins.
 pub(super) struct Guess<S: MechanicalSystem> {
@@ -159,7 +164,13 @@ where
         }
         if length <= SHORT {
             solution.node_kick = equations.node_kick(start, &solution.difference, None);
-            let (at_end, _) = equations.constraints_at_end(start, &solution.difference);
+            let (at_end, jacobian) = equations.constraints_at_end(start, &solution.difference);
+            if const { may_lose_constraints::<S>() } {
+                let mechanics = equations.mechanics();
+                if !are_met(mechanics, start, &solution.difference, &at_end, &jacobian, NEAR) {
+                    return None;
+                }
+            }
             let residual = equations.residual(start, &solution, &at_end);
             let mut update = residual.clone();
             factors.solve(&mut update);
@@ -177,6 +188,28 @@ where
         previous = length;
     }
     None
+}
+
+/// Whether the scene's elimination, which does not pivot, can lose digits without a cancellation: where a velocity is coupled to another
+/// coordinate, an entry beside the diagonal can be out of all proportion to it.
+const fn may_lose_constraints<S: MechanicalSystem>() -> bool {
+    S::N_CONSTRAINTS > 0 && !S::STRUCTURE.hessian.vq.is_empty()
+}
+
+/// Whether `φ` is at most `allowed` of what a displacement of the size of the step's ends makes of it.
+#[inline(always)]
+fn are_met<S: MechanicalSystem>(
+    mechanics: &Mechanics<S>,
+    start: &StepStart<'_, S>,
+    difference: &S::PerCoordinate<f64>,
+    residual: &S::PerConstraint<f64>,
+    jacobian: &S::PerJacobianEntry<f64>,
+    allowed: f64,
+) -> bool {
+    let reach = Array::from_fn(|i| start.q[i].abs() + difference[i].abs());
+    let scale = mechanics.constraint_scale(jacobian, &reach);
+    // Written so that a NaN is not met.
+    (0..S::N_CONSTRAINTS).all(|c| residual[c].abs() <= allowed * scale[c])
 }
 
 /// Where an iteration begins.
@@ -241,6 +274,7 @@ pub(super) fn iterate<S: MechanicalSystem, E: ImplicitStep<S>>(
     let mut constraint_residual = 0.0;
     let mut smallest_pivot_ratio = 1.0_f64;
     tally.begin_iteration();
+    let mut last = 0.0;
     let iteration = newton::iterate(|correction| {
         let (mut update, kkt) = equations.linearize(start, &mut solution);
         constraint_residual = largest_magnitude(update.as_ref()[S::N_COORDINATES..].iter().copied());
@@ -252,12 +286,23 @@ pub(super) fn iterate<S: MechanicalSystem, E: ImplicitStep<S>>(
         }
         kkt.solve(&mut update);
         subtract(&mut solution, &update);
-        let length = kkt.relative_length(|i| update[i], |i| start.q[i].abs() + solution.difference[i].abs());
-        tally.see_correction(|| length);
-        Ok(length)
+        last = kkt.relative_length(|i| update[i], |i| start.q[i].abs() + solution.difference[i].abs());
+        tally.see_correction(|| last);
+        Ok(last)
     });
     match iteration {
         Ok(Converged { corrections }) => {
+            let (residual, jacobian) = equations.constraints_at_end(start, &solution.difference);
+            let mechanics = equations.mechanics();
+            if !are_met(mechanics, start, &solution.difference, &residual, &jacobian, MET) {
+                let constraint_residual = largest_magnitude(residual.as_ref().iter().copied());
+                let failure = NotConverged { corrections, last_correction: last };
+                return Err(IterationFailure::from(failure).at(
+                    start.t,
+                    constraint_residual,
+                    smallest_pivot_ratio,
+                ));
+            }
             tally.count_corrections(corrections);
             Ok(solution)
         }

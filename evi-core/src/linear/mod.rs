@@ -1,34 +1,37 @@
 //! Linear solves of a step: in, a square matrix by rows; out, factors that solve for right-hand sides.
 //!
 //! [`Factorization`] is the contract between the integrators and a scene's own solvers: closed forms for one or two
-//! rows, the elimination that the derive emits for the scene's pattern ([`Guarded`]), and the pivoted dense one for
-//! every pattern ([`DenseLu`]).
+//! rows, the elimination that the derive emits for the scene's pattern ([`Guarded`]), the pivoted dense one for
+//! every pattern ([`DenseLu`]), and one for constraints of a stated rank ([`NullSpace`]).
 
 mod closed_form;
 mod conditioning;
-mod dense;
 mod elimination;
 #[cfg(feature = "std")]
 mod in_place;
 mod kkt;
 #[cfg(feature = "std")]
 mod lane_ldl;
+mod null_space;
+pub(crate) mod orthonormal;
 mod pivoted;
+mod singular_values;
 mod symmetric_eigen;
 mod triangular;
 
 pub use closed_form::{Inverse0, Inverse1, Inverse2};
 pub use conditioning::Conditioning;
-pub use dense::DenseLu;
-#[cfg(feature = "std")]
-pub(crate) use dense::checked_pivot_ratio;
 pub use elimination::{Elimination, Guarded, reciprocal_pivot};
 #[cfg(feature = "std")]
 pub(crate) use in_place::InPlaceLu;
 pub(crate) use kkt::{FactoredKkt, Kkt, constraint_index, reciprocal_power_of_two, unknowns};
 #[cfg(feature = "std")]
 pub(crate) use lane_ldl::{LaneGram, LaneMass};
-pub(crate) use pivoted::Pivoted;
+pub use null_space::NullSpace;
+#[cfg(feature = "std")]
+pub(crate) use pivoted::checked_pivot_ratio;
+pub use pivoted::{DenseLu, Pivoted};
+pub(crate) use singular_values::singular_values;
 pub(crate) use symmetric_eigen::SymmetricEigen;
 pub(crate) use triangular::Cholesky;
 

@@ -127,6 +127,10 @@ impl Tally for Diagnostics {
         self.counts.count_newton();
     }
 
+    fn count_rescue(&mut self, parts: u64) {
+        self.counts.count_rescue(parts);
+    }
+
     fn count_fallback(&mut self) {
         self.counts.count_fallback();
     }

@@ -20,6 +20,12 @@ pub trait Tally {
     #[inline(always)]
     fn count_newton(&mut self) {}
 
+    /// A step that has failed was taken in so many parts.
+    #[inline(always)]
+    fn count_rescue(&mut self, parts: u64) {
+        let _ = parts;
+    }
+
     /// A pivot of the scene's own elimination was round-off, and the pivoted dense solve has taken its place.
     #[inline(always)]
     fn count_fallback(&mut self) {}
@@ -82,6 +88,8 @@ pub struct Statistics {
     pub restarts: u64,
     /// Galerkin steps whose passes have been given up for Newton's iteration.
     pub newton_steps: u64,
+    /// Steps that have failed as a whole and were taken in parts, by [`Rescued`](crate::integrator::Rescued) schemes.
+    pub rescued_steps: u64,
 }
 
 impl Tally for Statistics {
@@ -101,6 +109,11 @@ impl Tally for Statistics {
     }
 
     #[cold]
+    fn count_rescue(&mut self, _parts: u64) {
+        self.rescued_steps += 1;
+    }
+
+    #[cold]
     fn count_fallback(&mut self) {
         self.fallbacks += 1;
     }
@@ -108,8 +121,8 @@ impl Tally for Statistics {
 
 memory!([] Fallbacks, |words| Self { fallbacks } => { words.count(fallbacks) });
 
-memory!([] Statistics, |words| Self { corrections, fallbacks, restarts, newton_steps } => {
-    for count in [corrections, fallbacks, restarts, newton_steps] {
+memory!([] Statistics, |words| Self { corrections, fallbacks, restarts, newton_steps, rescued_steps } => {
+    for count in [corrections, fallbacks, restarts, newton_steps, rescued_steps] {
         words.count(count);
     }
 });

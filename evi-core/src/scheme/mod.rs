@@ -252,6 +252,16 @@ pub enum LinearisationError {
         /// Relative length of the last one.
         last_correction: f64,
     },
+    /// A number of the configuration or the velocity is not finite.
+    #[error("{quantity} {index} to linearise at is not finite: {value}")]
+    Point {
+        /// `position` or `velocity`.
+        quantity: &'static str,
+        /// Index in its vector.
+        index: usize,
+        /// The value.
+        value: f64,
+    },
     /// The configuration cannot be moved onto the constraints, or mass matrix and constraints do not determine the motion there.
     #[error(
         "the configuration cannot be projected on the constraints: smallest over largest pivot {pivot_ratio:e}"

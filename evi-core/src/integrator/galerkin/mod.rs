@@ -89,6 +89,10 @@ impl<S: MechanicalSystem, const K: usize, F: NodalCurves<S>> Scheme<S> for Galer
 
     fn prepare(&self, mechanics: Mechanics<S>) -> Result<Self::Step, SchemeError> {
         let h = checked_step_size(self.h)?;
+        if S::STATED_RANK.is_some() {
+            let requirement = "constraints that are independent";
+            return Err(SchemeError::UnsupportedStructure { scheme: "Galerkin", requirement });
+        }
         let action = GalerkinAction::new(mechanics, self.curves.tables::<K>(h)?, h);
         let has_passes = F::ARE_POLYNOMIALS && LanePasses::<S, K>::EXIST && !self.by_newton;
         Ok(GalerkinStep {
