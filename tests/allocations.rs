@@ -10,10 +10,13 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::hint::black_box;
+use std::time::Duration;
 
 use evi_core::baseline::{GeneralizedAlpha, ImplicitMidpoint, Rattle, Rk4, Shake};
 use evi_core::generic::{GenericEvi, GenericGalerkin, GenericScheme, GenericSystem};
+use evi_core::integrator::{Diagnostics, OfRank};
 use evi_core::prelude::*;
+use evi_core::watch::{EnergyDrift, Limits};
 use evi_examples::{
     DoublePendulum, DrivenPendulum, FermiPastaUlam, HarmonicOscillator, Pendulum, SphericalPendulum, Start,
     StiffSpringPendulum,
@@ -268,6 +271,23 @@ fn going_to_a_time_does_not_allocate() {
 }
 
 #[test]
+fn watching_does_not_allocate() {
+    let run = Simulation::new(DOUBLE, Evi::midpoint(0.01)).start(mild().q, mild().v).unwrap();
+    let mut run = run.with_tally(Diagnostics::default());
+    let limits = Limits::of(&run)
+        .energy_change(1.0)
+        .constraint(1e-12)
+        .hidden_constraint(1e-12)
+        .steps(2_000)
+        .wall_time(Duration::from_secs(3600));
+    let mut watch = (EnergyDrift::of(&run), limits);
+    assert_eq!(allocations(|| assert!(run.advance_observed(10.0, &mut watch).is_ok())), 0);
+    assert_eq!(run.steps(), 1_000);
+    // What is written down asks for memory.
+    assert!(allocations(|| drop(run.checkpoint())) > 0);
+}
+
+#[test]
 fn a_step_that_fails_does_not_allocate() {
     // At this step size and frequency the step equations lose their solution after 2.1 units of time.
     let scheme = Evi::simpson(0.1).frequency(9.81_f64.sqrt());
@@ -277,4 +297,18 @@ fn a_step_that_fails_does_not_allocate() {
     let allocations = allocations(|| failure = run.advance_to(10.0).err());
     assert_eq!(allocations, 0);
     assert!(matches!(failure, Some(StepError::NoSolution { .. })), "{failure:?}");
+}
+
+#[test]
+fn a_step_that_is_taken_in_parts_does_not_allocate() {
+    let scheme = Evi::simpson(0.1).frequency(9.81_f64.sqrt()).rescued::<6>();
+    let horizontal = DOUBLE.horizontal();
+    let mut run = Simulation::new(DOUBLE, scheme).start(horizontal.q, horizontal.v).unwrap();
+    assert_eq!(allocations(|| assert!(run.advance_to(5.0).is_ok())), 0);
+    assert!(run.map().rescues().steps > 0);
+}
+
+#[test]
+fn no_step_on_a_null_space_allocates() {
+    check(OfRank::<_, 2>(DOUBLE), Evi::midpoint(0.01), mild());
 }

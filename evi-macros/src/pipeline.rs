@@ -24,6 +24,7 @@ pub(crate) fn expand(input: TokenStream) -> TokenStream {
     let equations = mechanics::differentiate_equations(&mut graph, &model);
     // Derivatives → what is zero, constant, varying.
     let structure = structure::analyze(&graph, &equations);
+    structure.check_gradients(&model, &mut diagnostics);
     // Graph → straight-line programs with named intermediate values in bounded scopes.
     let programs = schedule::schedule(&graph, &equations, structure);
     graph.verify();

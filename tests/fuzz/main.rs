@@ -61,11 +61,9 @@ enum Keeps {
 }
 
 impl Keeps {
-    /// What is left of it over such a step: a step of 1e-20 or 1e5 times the times of the motion is finite or refused, and a phase
-    /// of 100 has lost its digits; what it is worth nothing tells but the residuals of its end.
+    /// What is left of it over such a step, of any size: a phase of 100 has lost its digits, what it is worth nothing tells.
     fn over(self, h: f64, frequency: f64) -> Self {
-        let is_measured = (1e-20..1e5).contains(&h.abs()) && (h * frequency).abs() < 100.0;
-        if is_measured { self } else { Self::Nothing }
+        if (h * frequency).abs() < 100.0 { self } else { Self::Nothing }
     }
 
     /// What is left of it at such a time: a clock of ten digits leaves six to the step.
@@ -233,5 +231,5 @@ fn steps_are_taken_as_their_equations_say_or_refused<S: Random>() {
         all.hidden_constraints
     );
     assert!(all.accepted > outcomes.len() / 10, "too few steps are accepted");
-    assert!(all.refused > 0, "no step is refused");
+    assert!(all.refused > 0 || started < outcomes.len(), "neither a start nor a step is refused");
 }

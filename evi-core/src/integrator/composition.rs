@@ -4,8 +4,9 @@
 //! scheme of the same step size, `Ψ_{γ_s h} ∘ … ∘ Ψ_{γ_1 h}`. Whatever the base keeps (symplectic form, momentum maps, constraints) the
 //! composition keeps. Some fractions are negative: those stages go back in time.
 
-use super::{Compensable, CompensableStep, OneStep, Scheme, StepError, Tally};
+use super::{Compensable, CompensableStep, OneStep, Rescued, Scheme, StepError, Tally};
 use crate::mechanics::{LostDigits, Mechanics, State};
+use crate::memory::{Memory, memory};
 use crate::scheme::SchemeError;
 use crate::system::MechanicalSystem;
 
@@ -42,6 +43,45 @@ pub trait Symmetric: Clone {
     /// ```
     fn composed<const N: usize>(self, composition: Composition<N>) -> Composed<Self, N> {
         Composed { base: self, composition }
+    }
+
+    /// Takes a step that fails for its length ([`StepError::NoSolution`], [`StepError::Singular`], [`StepError::Projection`]) in `2` parts, if those
+    /// fail in `4`, and so on to `2^K`; the times of steps stay what they are. Where no number of parts helps, the error is that of the whole
+    /// step.
+    ///
+    /// Opt-in, for something is lost: steps of one length follow a modified energy, and one of another length follows another. A
+    /// rescued step is symplectic and on the constraints as every step is, but whether it is taken in parts depends on the state, so that the
+    /// map as a whole is not, nor does a step back undo it; the energy jumps by about the difference of both modified energies, once per
+    /// rescued step. Momenta are kept. How many steps that were is counted, by [`RescuedStep::rescues`](super::RescuedStep::rescues) and
+    /// [`Statistics`](super::Statistics). A motion that needs rescue often wants smaller steps.
+    ///
+    /// ```
+    /// # use evi_core::prelude::*;
+    /// # #[derive(MechanicalSystem)]
+    /// # #[evi(
+    /// #     coordinates(x1, y1, x2, y2),
+    /// #     kinetic = 0.5 * (der(x1).powi(2) + der(y1).powi(2) + der(x2).powi(2) + der(y2).powi(2)),
+    /// #     potential = 9.81 * (y1 + y2),
+    /// #     constraint(rod1: x1.powi(2) + y1.powi(2) == l.powi(2)),
+    /// #     constraint(rod2: (x2 - x1).powi(2) + (y2 - y1).powi(2) == l.powi(2)),
+    /// # )]
+    /// # struct DoublePendulum { l: f64 }
+    /// // The double pendulum from the horizontal at a step that is too large for its fastest moments.
+    /// let scheme = Evi::midpoint(0.1).frequency(3.132).rescued::<6>();
+    /// let mut run = Simulation::new(DoublePendulum { l: 1.0 }, scheme).start([1.0, 0.0, 2.0, 0.0], [0.0; 4])?;
+    /// run.advance_to(10.0)?;
+    /// assert!(run.map().rescues().steps > 0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// A rescued scheme is not symmetric: compose first.
+    ///
+    /// ```compile_fail,E0599
+    /// # use evi_core::prelude::*;
+    /// let refused = Evi::midpoint(0.1).rescued::<4>().composed(Composition::suzuki_4());
+    /// ```
+    fn rescued<const K: usize>(self) -> Rescued<Self, K> {
+        Rescued::new(self)
     }
 }
 
@@ -238,6 +278,11 @@ impl<S: MechanicalSystem, M: CompensableStep<S>, const N: usize> CompensableStep
 }
 
 impl<S: MechanicalSystem, M, const N: usize> ComposedStep<S, M, N> {
+    /// The maps of the stages, in their order.
+    pub const fn stages(&self) -> &[M; N] {
+        &self.stages
+    }
+
     /// Overwrites `state` with where the stages lead one after the other.
     #[inline(always)]
     fn take_stages(
@@ -256,6 +301,18 @@ impl<S: MechanicalSystem, M, const N: usize> ComposedStep<S, M, N> {
         Ok(())
     }
 }
+
+memory!([S: MechanicalSystem, M: Memory, const N: usize] ComposedStep<S, M, N>, |words|
+    Self { mechanics: _, stages, starts, h } => {
+        for start in starts {
+            words.fixed(*start);
+        }
+        words.fixed(*h);
+        for stage in stages {
+            words.part(stage);
+        }
+    }
+);
 
 #[cfg(test)]
 mod tests {

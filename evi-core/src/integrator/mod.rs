@@ -4,6 +4,8 @@
 //! [`OneStep`] map that holds everything that is constant for the run. A [`Simulation`] joins a scene with a scheme;
 //! a [`Run`] is a simulation at a state.
 
+#[cfg(feature = "std")]
+mod checkpoint;
 mod compensated;
 mod composition;
 mod curves;
@@ -14,15 +16,22 @@ mod galerkin;
 mod gauss;
 mod matrix_evi;
 mod multipliers;
+mod of_rank;
 mod positions;
 #[cfg(feature = "std")]
 mod proposal;
+mod rank_check;
+mod rescue;
 mod run;
 mod simulation;
 #[cfg(feature = "std")]
 mod trajectory;
 
-pub use crate::newton::{Fallbacks, Statistics, Tally};
+#[cfg(feature = "generic")]
+pub(crate) use crate::mechanics::CONSISTENCY;
+pub use crate::newton::{Diagnostics, Fallbacks, Statistics, Tally, Worst};
+#[cfg(feature = "std")]
+pub use checkpoint::{Checkpoint, ResumeError};
 pub use compensated::{Compensable, CompensableStep, Compensated, CompensatedStep};
 pub use composition::{Composed, ComposedStep, Composition, Symmetric};
 pub use evi::{Evi, EviStep};
@@ -33,19 +42,20 @@ pub use gauss::{Gauss, GaussStep};
 pub use matrix_evi::{
     LinearisedAlong, LinearisedAt, MatrixEvi, MatrixEviStep, QuadraticModel, StepMode, Stiffness,
 };
+pub use of_rank::OfRank;
 #[cfg(feature = "std")]
 pub use proposal::{LONGEST_TRIAL, Member, PASSES_OF_NEWTON, Proposal, ProposalError, propose};
+pub use rescue::{Rescued, RescuedStep, Rescues};
 pub use run::Run;
 #[cfg(feature = "generic")]
 pub(crate) use run::steps_between;
-#[cfg(feature = "generic")]
-pub(crate) use simulation::CONSISTENCY;
 pub use simulation::{ConstraintLabel, Simulation, StartError};
 #[cfg(feature = "std")]
 pub use trajectory::{Interrupted, Trajectory};
 
 use crate::linear::SingularMatrix;
 use crate::mechanics::{Mechanics, NOTHING, ProjectionError, State};
+use crate::memory::Memory;
 use crate::newton::NotConverged;
 use crate::scheme::SchemeError;
 use crate::system::MechanicalSystem;
@@ -62,8 +72,8 @@ pub trait Scheme<S: MechanicalSystem> {
     fn prepare(&self, mechanics: Mechanics<S>) -> Result<Self::Step, SchemeError>;
 }
 
-/// A map from the state at `t` to the state at `t + h`.
-pub trait OneStep<S: MechanicalSystem> {
+/// A map from the state at `t` to the state at `t + h`, with a [`Memory`] of the steps before.
+pub trait OneStep<S: MechanicalSystem>: Memory {
     /// Step size; negative for a map that goes back in time.
     fn h(&self) -> f64;
 
@@ -143,6 +153,22 @@ pub enum StepError {
         target: f64,
         /// Step size.
         h: f64,
+    },
+    /// At the end of the step constraints contradict each other, of which some were stated to follow from the others
+    /// ([`OfRank`]).
+    #[error(
+        "constraints contradict each other at t = {t}: where as many hold as are independent, constraint {constraint} has the residual \
+         {residual:e}, allowed {allowed:e}"
+    )]
+    ContradictoryConstraints {
+        /// Time at the end of the step.
+        t: f64,
+        /// A constraint that does not hold.
+        constraint: ConstraintLabel,
+        /// Its residual.
+        residual: f64,
+        /// Largest residual that passes.
+        allowed: f64,
     },
     /// The end of the step is not finite.
     #[error("the state at t = {t} is not finite")]

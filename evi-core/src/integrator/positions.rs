@@ -7,8 +7,10 @@
 use super::{IterationFailure, StepError};
 use crate::array::Array;
 use crate::linear::{Factorization, constraint_index, largest_magnitude};
-use crate::mechanics::{ImplicitStep, StepSolution, StepStart};
-use crate::newton::{self, Converged, Tally};
+use crate::mechanics::{ImplicitStep, Mechanics, StepSolution, StepStart};
+use crate::memory::memory;
+use crate::newton::{self, Converged, NotConverged, Tally};
+use crate::scalar::Scalar;
 use crate::system::MechanicalSystem;
 
 /// After a correction `r` below the root of this, its matrix is good for one more. What Newton leaves of `r` is about `r²`, its matrix then
@@ -21,6 +23,11 @@ const SLOWEST: f64 = 0.25;
 const FRESH: usize = 6;
 /// A history is trusted that predicted the last step to an eighth, in squares.
 const TRUSTED: f64 = 1.0 / 64.0;
+/// Before its last correction, the root of `SHORT` long, an iteration has to be as near to the constraints.
+const NEAR: f64 = 1e-3;
+/// After the last one; constraints may add up terms a thousand times larger. Newton's iteration ends where corrections do, which is on the
+/// constraints unless their matrix has lost its digits.
+const MET: f64 = 1e-9;
 
 /// Where the iteration begins.
 pub(super) struct Guess<S: MechanicalSystem> {
@@ -81,6 +88,13 @@ impl<S: MechanicalSystem> Sags<S> {
     }
 }
 
+memory!([S: MechanicalSystem] Sags<S>, |words| Self { predicted, previous, was_right, is_trusted } => {
+    words.numbers(predicted);
+    words.part(previous);
+    words.flag(was_right);
+    words.flag(is_trusted);
+});
+
 /// Solves the equations of a step.
 ///
 /// # Errors
@@ -127,8 +141,10 @@ where
     let mut weights = S::PerCoordinate::<f64>::from_fn(|_| 0.0);
     let mut previous = f64::INFINITY;
     let mut corrections = 0;
+    tally.begin_iteration();
     for fresh in 0..FRESH {
         let (mut update, kkt) = equations.linearize(start, &mut solution);
+        tally.see_matrix(|| kkt.conditioning());
         let factors = kkt.factor_unscaled()?;
         factors.solve(&mut update);
         subtract(&mut solution, &update);
@@ -140,6 +156,7 @@ where
             }
         }
         let mut length = squared_length::<S>(&weights, |i| update[i]);
+        tally.see_correction(|| Scalar::sqrt(length));
         // Written so that a NaN does not contract.
         let contracts = length <= SLOWEST * previous;
         if !contracts {
@@ -147,7 +164,13 @@ where
         }
         if length <= SHORT {
             solution.node_kick = equations.node_kick(start, &solution.difference, None);
-            let (at_end, _) = equations.constraints_at_end(start, &solution.difference);
+            let (at_end, jacobian) = equations.constraints_at_end(start, &solution.difference);
+            if const { may_lose_constraints::<S>() } {
+                let mechanics = equations.mechanics();
+                if !are_met(mechanics, start, &solution.difference, &at_end, &jacobian, NEAR) {
+                    return None;
+                }
+            }
             let residual = equations.residual(start, &solution, &at_end);
             let mut update = residual.clone();
             factors.solve(&mut update);
@@ -155,6 +178,7 @@ where
             kick_after(equations, start, &mut solution, &residual, &update);
             corrections += 1;
             let last = squared_length::<S>(&weights, |i| update[i]);
+            tally.see_correction(|| Scalar::sqrt(last));
             if newton::squares_predict_round_off(last, length) {
                 tally.count_corrections(corrections);
                 return Some(solution);
@@ -164,6 +188,28 @@ where
         previous = length;
     }
     None
+}
+
+/// Whether the scene's elimination, which does not pivot, can lose digits without a cancellation: where a velocity is coupled to another
+/// coordinate, an entry beside the diagonal can be out of all proportion to it.
+const fn may_lose_constraints<S: MechanicalSystem>() -> bool {
+    S::N_CONSTRAINTS > 0 && !S::STRUCTURE.hessian.vq.is_empty()
+}
+
+/// Whether `φ` is at most `allowed` of what a displacement of the size of the step's ends makes of it.
+#[inline(always)]
+fn are_met<S: MechanicalSystem>(
+    mechanics: &Mechanics<S>,
+    start: &StepStart<'_, S>,
+    difference: &S::PerCoordinate<f64>,
+    residual: &S::PerConstraint<f64>,
+    jacobian: &S::PerJacobianEntry<f64>,
+    allowed: f64,
+) -> bool {
+    let reach = Array::from_fn(|i| start.q[i].abs() + difference[i].abs());
+    let scale = mechanics.constraint_scale(jacobian, &reach);
+    // Written so that a NaN is not met.
+    (0..S::N_CONSTRAINTS).all(|c| residual[c].abs() <= allowed * scale[c])
 }
 
 /// Where an iteration begins.
@@ -227,9 +273,12 @@ pub(super) fn iterate<S: MechanicalSystem, E: ImplicitStep<S>>(
     let mut solution = begun_at::<S>(difference);
     let mut constraint_residual = 0.0;
     let mut smallest_pivot_ratio = 1.0_f64;
+    tally.begin_iteration();
+    let mut last = 0.0;
     let iteration = newton::iterate(|correction| {
         let (mut update, kkt) = equations.linearize(start, &mut solution);
         constraint_residual = largest_magnitude(update.as_ref()[S::N_COORDINATES..].iter().copied());
+        tally.see_matrix(|| kkt.conditioning());
         let kkt = E::factor(kkt).map_err(|matrix| IterationFailure::Singular { correction, matrix })?;
         smallest_pivot_ratio = smallest_pivot_ratio.min(kkt.pivot_ratio());
         if kkt.is_fallback() {
@@ -237,10 +286,23 @@ pub(super) fn iterate<S: MechanicalSystem, E: ImplicitStep<S>>(
         }
         kkt.solve(&mut update);
         subtract(&mut solution, &update);
-        Ok(kkt.relative_length(|i| update[i], |i| start.q[i].abs() + solution.difference[i].abs()))
+        last = kkt.relative_length(|i| update[i], |i| start.q[i].abs() + solution.difference[i].abs());
+        tally.see_correction(|| last);
+        Ok(last)
     });
     match iteration {
         Ok(Converged { corrections }) => {
+            let (residual, jacobian) = equations.constraints_at_end(start, &solution.difference);
+            let mechanics = equations.mechanics();
+            if !are_met(mechanics, start, &solution.difference, &residual, &jacobian, MET) {
+                let constraint_residual = largest_magnitude(residual.as_ref().iter().copied());
+                let failure = NotConverged { corrections, last_correction: last };
+                return Err(IterationFailure::from(failure).at(
+                    start.t,
+                    constraint_residual,
+                    smallest_pivot_ratio,
+                ));
+            }
             tally.count_corrections(corrections);
             Ok(solution)
         }

@@ -1,8 +1,6 @@
 //! A scene's own elimination, guarded: straight-line code without pivoting where its pivots are sound, the pivoted
 //! dense solve where they are not.
 
-use nalgebra::{Const, DimMin};
-
 use super::{DenseLu, Factorization, SingularMatrix};
 
 /// A pivot below this fraction of the terms that it is a sum of has lost four digits: more would cost Newton's iteration
@@ -25,20 +23,14 @@ pub fn reciprocal_pivot(pivot: f64, magnitude: f64) -> Option<f64> {
 }
 
 /// An [`Elimination`] with the pivoted dense solve as its fallback.
-pub enum Guarded<E, const D: usize>
-where
-    Const<D>: DimMin<Const<D>, Output = Const<D>>,
-{
+pub enum Guarded<E, const D: usize> {
     /// The scene's own elimination.
     Own(E),
     /// The pivoted dense solve.
     Dense(DenseLu<D>),
 }
 
-impl<E: Elimination<D>, const D: usize> Factorization<[f64; D], [[f64; D]; D]> for Guarded<E, D>
-where
-    Const<D>: DimMin<Const<D>, Output = Const<D>>,
-{
+impl<E: Elimination<D>, const D: usize> Factorization<[f64; D], [[f64; D]; D]> for Guarded<E, D> {
     #[inline]
     fn factor(matrix: &[[f64; D]; D]) -> Result<Self, SingularMatrix> {
         match E::factor(matrix) {
@@ -74,9 +66,6 @@ where
 }
 
 #[cold]
-fn dense<const D: usize>(matrix: &[[f64; D]; D]) -> Result<DenseLu<D>, SingularMatrix>
-where
-    Const<D>: DimMin<Const<D>, Output = Const<D>>,
-{
+fn dense<const D: usize>(matrix: &[[f64; D]; D]) -> Result<DenseLu<D>, SingularMatrix> {
     DenseLu::factor(matrix)
 }

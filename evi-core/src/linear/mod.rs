@@ -1,38 +1,41 @@
 //! Linear solves of a step: in, a square matrix by rows; out, factors that solve for right-hand sides.
 //!
 //! [`Factorization`] is the contract between the integrators and a scene's own solvers: closed forms for one or two
-//! rows, the elimination that the derive emits for the scene's pattern ([`Guarded`]), and the pivoted dense one for
-//! every pattern ([`DenseLu`]).
+//! rows, the elimination that the derive emits for the scene's pattern ([`Guarded`]), the pivoted dense one for
+//! every pattern ([`DenseLu`]), and one for constraints of a stated rank ([`NullSpace`]).
 
 mod closed_form;
-mod dense;
+mod conditioning;
 mod elimination;
 #[cfg(feature = "std")]
 mod in_place;
 mod kkt;
 #[cfg(feature = "std")]
 mod lane_ldl;
+mod null_space;
 #[cfg(feature = "std")]
 mod ordering;
+pub(crate) mod orthonormal;
 mod pivoted;
+mod singular_values;
 mod symmetric_eigen;
 mod triangular;
 
 pub use closed_form::{Inverse0, Inverse1, Inverse2};
-pub use dense::DenseLu;
-#[cfg(feature = "std")]
-pub(crate) use dense::checked_pivot_ratio;
+pub use conditioning::Conditioning;
 pub use elimination::{Elimination, Guarded, reciprocal_pivot};
 #[cfg(feature = "std")]
 pub(crate) use in_place::InPlaceLu;
-#[cfg(feature = "generic")]
-pub(crate) use kkt::reciprocal_power_of_two;
-pub(crate) use kkt::{FactoredKkt, Kkt, constraint_index, unknowns};
+pub(crate) use kkt::{FactoredKkt, Kkt, constraint_index, reciprocal_power_of_two, unknowns};
 #[cfg(feature = "std")]
 pub(crate) use lane_ldl::{LaneGram, LaneMass};
+pub use null_space::NullSpace;
 #[cfg(feature = "std")]
 pub(crate) use ordering::band_places;
-pub(crate) use pivoted::Pivoted;
+#[cfg(feature = "std")]
+pub(crate) use pivoted::checked_pivot_ratio;
+pub use pivoted::{DenseLu, Pivoted};
+pub(crate) use singular_values::singular_values;
 pub(crate) use symmetric_eigen::SymmetricEigen;
 pub(crate) use triangular::Cholesky;
 

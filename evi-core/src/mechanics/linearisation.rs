@@ -128,6 +128,7 @@ impl<S: MechanicalSystem> Mechanics<S> {
             return Err(LinearisationError::UnsupportedStructure { requirement });
         }
         let q = self.projected(q)?;
+        check_finite("velocity", v.as_ref())?;
         let v = self.project_velocity(0.0, &q, v.clone()).map_err(not_projected)?.v;
         let multipliers = self.multipliers_at(&q, &v)?;
         let stiffness = self.stiffness_at(&q, &multipliers);
@@ -201,6 +202,7 @@ impl<S: MechanicalSystem> Mechanics<S> {
     }
 
     fn projected(&self, q: &S::PerCoordinate<f64>) -> Result<S::PerCoordinate<f64>, LinearisationError> {
+        check_finite("position", q.as_ref())?;
         let at_rest = Array::from_fn(|_| 0.0);
         self.project_configuration(0.0, q, &at_rest).map_err(not_projected)
     }
@@ -367,6 +369,13 @@ fn not_projected(error: ProjectionError) -> LinearisationError {
         ProjectionError::NotConverged { .. } => f64::NAN,
     };
     LinearisationError::Projection { pivot_ratio }
+}
+
+fn check_finite(quantity: &'static str, values: &[f64]) -> Result<(), LinearisationError> {
+    match values.iter().position(|value| !value.is_finite()) {
+        Some(index) => Err(LinearisationError::Point { quantity, index, value: values[index] }),
+        None => Ok(()),
+    }
 }
 
 fn check_structure<S: MechanicalSystem>() -> Result<(), LinearisationError> {

@@ -5,6 +5,7 @@
 //! quadratic part is integrated exactly), and steps that are linear in the momentum, but for their constraints: those of
 //! quadratic Lagrangians (`FoldedStep`), of the trapezoidal rule (`LeapfrogStep`), and impulse methods (`ImpulseStep`).
 
+mod constraint_rank;
 mod constraints;
 mod coordinate_matrix;
 mod coupling;
@@ -36,6 +37,8 @@ mod separable_action;
 mod state;
 mod step_equations;
 
+pub(crate) use constraint_rank::CONSISTENCY;
+pub use constraint_rank::{ConstraintRank, ConstraintSet};
 pub(crate) use constraints::{Directions, NOTHING};
 pub(crate) use coordinate_matrix::{CoordinateMatrix, Rows};
 pub(crate) use coupling::{AsScene, Coupling, Full};
@@ -72,7 +75,8 @@ pub(crate) use step_equations::{DiscreteLagrangian, Slot};
 
 use crate::array::Array;
 use crate::linear::Kkt;
-use crate::system::MechanicalSystem;
+use crate::scalar::Scalar;
+use crate::system::{Entry, MechanicalSystem};
 
 /// A scene with its parameters folded into constants.
 pub struct Mechanics<S: MechanicalSystem> {
@@ -102,6 +106,26 @@ impl<S: MechanicalSystem> Mechanics<S> {
         let (_, hessian) = S::lagrangian_derivatives(&self.constants, t, q, v);
         let (_, jacobian) = S::constraint_derivatives(&self.constants, t, q);
         self.mass_kkt(hessian.as_ref(), jacobian.as_ref()).scale()
+    }
+
+    /// The largest entry of `D ∂²L/∂q² D` with `D = diag 1/√|Mᵢᵢ|`: about the square of the fastest rate of the free motion.
+    pub(crate) fn largest_squared_rate(
+        &self,
+        t: f64,
+        q: &S::PerCoordinate<f64>,
+        v: &S::PerCoordinate<f64>,
+    ) -> f64 {
+        let (_, hessian) = S::lagrangian_derivatives(&self.constants, t, q, v);
+        let value = |entry: &Entry| entry.value(self.constants.as_ref(), hessian.as_ref());
+        let mut mass = S::PerCoordinate::<f64>::from_fn(|_| 0.0);
+        for entry in S::STRUCTURE.hessian.vv.iter().filter(|entry| entry.row == entry.col) {
+            mass[entry.row] = value(entry).abs();
+        }
+        let rate = |entry: &Entry| {
+            let scale = Scalar::sqrt(mass[entry.row]) * Scalar::sqrt(mass[entry.col]);
+            if scale > 0.0 { value(entry).abs() / scale } else { 0.0 }
+        };
+        S::STRUCTURE.hessian.qq.iter().map(rate).fold(0.0, f64::max)
     }
 
     /// The mass matrix of a scene in which it is constant.

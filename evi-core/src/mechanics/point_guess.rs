@@ -14,8 +14,8 @@ pub(super) type NodeMultipliers<S> = <S as MechanicalSystem>::PerConstraint<Lane
 
 /// Velocities at the nodes `1 .. K` and multipliers at the nodes before the last.
 pub(crate) struct NodeMotion<S: MechanicalSystem> {
-    pub(super) velocities: Nodes<S>,
-    pub(super) multipliers: NodeMultipliers<S>,
+    pub(crate) velocities: Nodes<S>,
+    pub(crate) multipliers: NodeMultipliers<S>,
 }
 
 // Written out, since a derive would demand the same of `S`.

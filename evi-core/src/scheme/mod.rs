@@ -21,6 +21,7 @@ mod nodal;
 #[cfg(feature = "std")]
 mod point_tables;
 mod quadrature;
+mod resonance;
 mod scene_frequencies;
 
 pub use about::{About, AboutTable};
@@ -47,6 +48,8 @@ pub use nodal::{MOST_INTERVALS, NodalCurves, NodalTable, NodalTables};
 #[cfg(feature = "std")]
 pub(crate) use point_tables::PointTables;
 pub use quadrature::{Quadrature, QuadratureError};
+pub use resonance::Resonance;
+pub(crate) use resonance::to_multiple_of_pi;
 pub use scene_frequencies::{SceneFrequencies, SceneTable};
 
 /// A scheme that does not define a step.
@@ -127,6 +130,7 @@ pub enum SchemeError {
         coordinates: usize,
     },
     /// There are no nodes for so many intervals.
+    #[cfg(feature = "generic")]
     #[error("a Galerkin integrator has 1 to {MOST_INTERVALS} intervals, not {intervals}")]
     Intervals {
         /// Number of intervals.
@@ -251,6 +255,16 @@ pub enum LinearisationError {
         corrections: usize,
         /// Relative length of the last one.
         last_correction: f64,
+    },
+    /// A number of the configuration or the velocity is not finite.
+    #[error("{quantity} {index} to linearise at is not finite: {value}")]
+    Point {
+        /// `position` or `velocity`.
+        quantity: &'static str,
+        /// Index in its vector.
+        index: usize,
+        /// The value.
+        value: f64,
     },
     /// The configuration cannot be moved onto the constraints, or mass matrix and constraints do not determine the motion there.
     #[error(

@@ -7,10 +7,12 @@
 mod classification;
 mod forces;
 mod report;
+mod wrapped;
 
 pub use classification::{Block, ConstraintStructure, HessianBlocks, MassShape, Potential};
 pub use forces::{ForceStructure, HasFrequencies};
 pub use report::{Equation, Formula, KernelReport, SystemReport};
+pub(crate) use wrapped::unfolded_scene_of_inner;
 
 use crate::array::Array;
 use crate::linear::Factorization;
@@ -29,6 +31,8 @@ pub trait MechanicalSystem: Sized {
     const COORDINATES: &'static [&'static str];
     /// Names of the constraints, in the order of `φ`.
     const CONSTRAINTS: &'static [&'static str];
+    /// How many of the constraints are independent, where that is stated: of scenes of `integrator::OfRank` alone. Elsewhere all of them are.
+    const STATED_RANK: Option<usize> = None;
     /// Names of the struct's fields that the equations use, in the order of [`parameters`](Self::parameters).
     const PARAMETERS: &'static [&'static str];
     /// Number of inputs.

@@ -13,8 +13,10 @@ use std::collections::BTreeSet;
 
 pub(crate) use elimination::Elimination;
 
+use crate::diagnostics::Diagnostics;
 use crate::expr::{Dependence, ExprId, Graph};
 use crate::mechanics::{Equations, Partial};
+use crate::model::Model;
 
 /// The sparsity of a system.
 pub(crate) struct Structure {
@@ -46,6 +48,20 @@ pub(crate) struct Structure {
     pub(crate) forces: Dependence,
     /// The kind of the equations.
     pub(crate) classification: Classification,
+}
+
+impl Structure {
+    /// Reports constraints without a gradient: of what they contain, nothing is left.
+    pub(crate) fn check_gradients(&self, model: &Model, diagnostics: &mut Diagnostics) {
+        let each = &self.classification.each_constraint;
+        for ((name, _), constraint) in model.constraints.iter().zip(each) {
+            if constraint.gradient == Block::Zero {
+                let message =
+                    format!("constraint `{name}` constrains nothing: no coordinate is left in `LHS - RHS`");
+                diagnostics.report(name.span(), message);
+            }
+        }
+    }
 }
 
 /// A nonzero entry of a matrix.

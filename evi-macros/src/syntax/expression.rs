@@ -7,7 +7,9 @@ use quote::ToTokens;
 use syn::parse::{ParseStream, Parser};
 use syn::spanned::Spanned;
 
-use super::integers::{integer_division_message, integer_literal, is_integer, power_message};
+use super::integers::{
+    integer_division_message, integer_literal, is_integer, is_integer_literal, power_message,
+};
 use super::spine::{Tree, first_span, last_span, left_operand};
 use crate::diagnostics::{Diagnostics, suggestion};
 use crate::expr::{Binary, ExprId, Graph, Unary};
@@ -268,6 +270,10 @@ impl<R: Resolver> Lowering<'_, R> {
         match (method.as_str(), arguments.as_slice()) {
             ("powi", [exponent]) => match integer_literal(exponent) {
                 Some(exponent) => receiver.map(|base| self.graph.power(base, exponent)),
+                None if is_integer_literal(exponent) => self.mistake_over(
+                    exponent,
+                    "an exponent of `.powi` is between -2147483647 and 2147483647; for others write `.powf(..)`",
+                ),
                 None => self.mistake_over(
                     exponent,
                     "`.powi` takes an integer literal; for other exponents write `.powf(..)`",

@@ -16,6 +16,18 @@ pub(super) fn integer_literal(expression: &syn::Expr) -> Option<i32> {
     }
 }
 
+/// Whether this is an integer literal, of whatever size.
+pub(super) fn is_integer_literal(expression: &syn::Expr) -> bool {
+    match expression {
+        syn::Expr::Lit(syn::ExprLit { lit: syn::Lit::Int(integer), .. }) => {
+            matches!(integer.suffix(), "" | "i32")
+        }
+        syn::Expr::Unary(syn::ExprUnary { op: syn::UnOp::Neg(_), expr, .. }) => is_integer_literal(expr),
+        syn::Expr::Paren(inner) => is_integer_literal(&inner.expr),
+        _ => false,
+    }
+}
+
 /// What to write for a power, from the operand behind its sign. `^` binds loosely in Rust: of `x^2 + y` the
 /// operand is `2 + y`, and the exponent its first number.
 pub(super) fn power_message(sign: &str, operand: &syn::Expr) -> String {

@@ -10,4 +10,8 @@ struct Exponents { n: f64 }
 #[evi(coordinates(x), kinetic = 0.5 * der(x).powi(), potential = x.sin(2.0 * x) + x.atan2() + x.powf(1.0, 2.0))]
 struct Counts;
 
+#[derive(MechanicalSystem)]
+#[evi(coordinates(x), kinetic = 0.5 * der(x).powi(2), potential = x.powi(99999999999) + x.powi(-(3000000000)))]
+struct LargeExponents;
+
 fn main() {}

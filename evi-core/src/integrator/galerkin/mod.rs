@@ -8,6 +8,7 @@ use core::fmt;
 
 use super::{Compensable, CompensableStep, OneStep, Scheme, StepError, Symmetric, Tally};
 use crate::mechanics::{Dropped, GalerkinAction, Lost, LostDigits, Mechanics, RoundOff, State, Sum};
+use crate::memory::memory;
 use crate::scalar::InstructionSet;
 use crate::scheme::{Frequency, Linear, NodalCurves, SchemeError, checked_step_size};
 use crate::system::MechanicalSystem;
@@ -90,6 +91,10 @@ impl<S: MechanicalSystem, const K: usize, F: NodalCurves<S>> Scheme<S> for Galer
 
     fn prepare(&self, mechanics: Mechanics<S>) -> Result<Self::Step, SchemeError> {
         let h = checked_step_size(self.h)?;
+        if S::STATED_RANK.is_some() {
+            let requirement = "constraints that are independent";
+            return Err(SchemeError::UnsupportedStructure { scheme: "Galerkin", requirement });
+        }
         let action = GalerkinAction::new(mechanics, self.curves.tables::<K>(h)?, h);
         let has_passes = F::ARE_POLYNOMIALS && !self.by_newton;
         let is_mass_constant = LanePasses::<S, K>::EXIST;
@@ -254,3 +259,18 @@ fn by_passes<S: MechanicalSystem, R: RoundOff<S>>(
     passes.forget();
     Ok(None)
 }
+
+memory!([S: MechanicalSystem, F: NodalCurves<S>, const K: usize] GalerkinStep<S, F, K>, |words|
+    Self { action, passes, points, newton } => {
+        action.for_each_number(|number| words.fixed(number));
+        words.fixed(if passes.is_some() { 1.0 } else { 0.0 });
+        if let Some(passes) = passes {
+            words.part(passes);
+        }
+        words.fixed(if points.is_some() { 1.0 } else { 0.0 });
+        if let Some(points) = points {
+            words.part(points);
+        }
+        words.part(newton);
+    }
+);

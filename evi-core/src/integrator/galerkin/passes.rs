@@ -9,6 +9,7 @@ use crate::linear::{Factorization, SingularMatrix};
 use crate::mechanics::{
     FirstGuess, LaneEnd, LaneStep, Lost, Mechanics, Passes, ProjectionError, RoundOff, State, Sum,
 };
+use crate::memory::memory;
 use crate::scalar::{InstructionSet, Lanes};
 use crate::scheme::PAST;
 use crate::system::MechanicalSystem;
@@ -122,3 +123,13 @@ impl<S: MechanicalSystem, const K: usize> NodePasses<S> for LanePasses<S, K> {
         self.known = 0;
     }
 }
+
+// The storage of the passes is written anew in every step.
+memory!([S: MechanicalSystem, const K: usize] LanePasses<S, K>, |words|
+    Self { step: _, instructions: _, past, known, h: _ } => {
+        for accelerations in past {
+            words.lanes(accelerations);
+        }
+        words.index(known);
+    }
+);

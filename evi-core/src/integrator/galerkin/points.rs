@@ -10,6 +10,7 @@ use crate::mechanics::{
     Lost, Mechanics, NodeMotion, PointEnd, PointGuess, PointIteration, PointPasses, ProjectionError,
     RoundOff, State, Sum,
 };
+use crate::memory::memory;
 use crate::scalar::InstructionSet;
 use crate::scheme::PAST;
 use crate::system::MechanicalSystem;
@@ -109,3 +110,14 @@ impl<S: MechanicalSystem, const K: usize> NodePasses<S> for PointSteps<S, K> {
         self.known = 0;
     }
 }
+
+// The storage of the passes is written anew in every step.
+memory!([S: MechanicalSystem, const K: usize] PointSteps<S, K>, |words|
+    Self { passes: _, instructions: _, past, known, h: _ } => {
+        for NodeMotion { velocities, multipliers } in past {
+            words.lanes(velocities);
+            words.lanes(multipliers);
+        }
+        words.index(known);
+    }
+);

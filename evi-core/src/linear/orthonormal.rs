@@ -1,0 +1,94 @@
+//! Orthonormal bases, by Gram and Schmidt's process, twice each ("twice is enough": Giraud, Langou, Rozložník, van den Eshof,
+//! Numer. Math. 101 (2005) 87), which makes them orthonormal to round-off however nearly dependent the vectors are.
+
+use crate::array::Array;
+use crate::scalar::Scalar;
+
+/// Of vectors that are this fraction of the longest or longer, the first is taken.
+const AS_LONG: f64 = 0.5;
+
+/// `x · y`.
+#[inline]
+pub(crate) fn product<V: Array<f64>>(x: &V, y: &V) -> f64 {
+    x.as_ref().iter().zip(y.as_ref()).map(|(x, y)| x * y).sum()
+}
+
+/// Subtracts from `x` what the orthonormal `basis` spans of it.
+fn remove<V: Array<f64>>(basis: &[V], x: &mut V) {
+    for known in basis {
+        let share = product(known, x);
+        for (x, known) in x.as_mut().iter_mut().zip(known.as_ref()) {
+            *x -= share * known;
+        }
+    }
+}
+
+/// Sets `basis[at]` to the direction of what the vectors before it do not span of `x`, and returns the length of that.
+fn extend<V: Array<f64>>(basis: &mut [V], at: usize, x: &V) -> f64 {
+    let Some((known, [next, ..])) = basis.split_at_mut_checked(at) else { return 0.0 };
+    *next = x.clone();
+    let mut rest = 0.0;
+    for pass in 0..2 {
+        remove(known, next);
+        let length = Scalar::sqrt(product(next, next));
+        // In the second pass only round-off is left to remove.
+        rest = if pass == 0 { length } else { rest };
+        let scale = if length > 0.0 { 1.0 / length } else { 0.0 };
+        for x in next.as_mut() {
+            *x *= scale;
+        }
+    }
+    rest
+}
+
+/// Overwrites `basis[..rank]` with an orthonormal basis of `rank` of the `vectors`, and the first of `order` with those, always one next of which
+/// about as much is left as of any other: an elimination with pivoting by columns. Returns the smallest of these rests.
+pub(crate) fn span<V, W, B, O>(vectors: &W, rank: usize, basis: &mut B, order: &mut O) -> f64
+where
+    V: Array<f64>,
+    W: Array<V>,
+    B: Array<V>,
+    O: Array<usize>,
+{
+    let mut smallest = f64::INFINITY;
+    for k in 0..rank.min(W::LEN) {
+        let rest = |place: usize| {
+            let mut rest = vectors[order[place]].clone();
+            remove(&basis.as_ref()[..k], &mut rest);
+            product(&rest, &rest)
+        };
+        let longest = (k..W::LEN).map(rest).fold(0.0, |longest: f64, length| longest.max(length));
+        let next = (k..W::LEN).find(|&place| rest(place) >= AS_LONG * AS_LONG * longest).unwrap_or(k);
+        // The others keep their order.
+        order.as_mut()[k..=next].rotate_right(1);
+        let left = extend(basis.as_mut(), k, &vectors[order[k]]);
+        // Written so that a NaN survives.
+        smallest = if left >= smallest || smallest.is_nan() { smallest } else { left };
+    }
+    smallest
+}
+
+/// Overwrites `basis[..rank]` with an orthonormal basis of the first `rank` vectors, in their order.
+pub(crate) fn in_order<V, W>(vectors: &W, rank: usize, basis: &mut W)
+where
+    V: Array<f64>,
+    W: Array<V>,
+{
+    for k in 0..rank.min(W::LEN) {
+        extend(basis.as_mut(), k, &vectors[k]);
+    }
+}
+
+/// Completes an orthonormal basis of which the first `rank` vectors are there.
+pub(crate) fn complete<V, B>(rank: usize, basis: &mut B)
+where
+    V: Array<f64>,
+    B: Array<V>,
+{
+    for k in rank..B::LEN {
+        // The axis of which the basis so far spans the least.
+        let spanned = |axis: usize| basis.as_ref()[..k].iter().map(|x| x[axis] * x[axis]).sum::<f64>();
+        let next = (0..V::LEN).fold(0, |best, axis| if spanned(axis) < spanned(best) { axis } else { best });
+        extend(basis.as_mut(), k, &V::from_fn(|i| if i == next { 1.0 } else { 0.0 }));
+    }
+}

@@ -1,0 +1,90 @@
+//! Steps in which the optimiser finds no path to a panic: every function below links only if that is proved.
+//!
+//! Missing are `Galerkin` and `Gauss`: Newton's iteration, which takes over where their passes do not converge, works on storage whose length
+//! no type knows, and checks its bounds. Starts may panic, in a scheme that is prepared with a broken invariant.
+
+mod scenes;
+
+use std::hint::black_box;
+
+use evi_core::baseline::Rattle;
+use evi_core::integrator::{Compensated, Composed, LinearisedAt, MatrixEvi, OfRank, Rescued};
+use evi_core::prelude::*;
+use no_panic::no_panic;
+use scenes::{DoublePendulum, DrivenPendulum, SpringPendulum};
+
+/// A run that counts nothing.
+type RunOf<S, F> = Run<S, <F as Scheme<S>>::Step, ()>;
+
+/// Functions that take a step, with the name that the linker complains of.
+macro_rules! steps {
+    ($($(#[$attribute:meta])* $name:ident: $scene:ident by $scheme:ty;)*) => {$(
+        $(#[$attribute])*
+        #[no_panic]
+        #[inline(never)]
+        fn $name(run: &mut RunOf<$scene, $scheme>) -> bool {
+            run.advance().is_ok()
+        }
+    )*};
+}
+
+steps! {
+    /// Folded, on straight curves.
+    folded: DoublePendulum by Evi<1>;
+    /// Folded, three nodes on trigonometric curves.
+    folded_on_curves: DoublePendulum by Evi<3, Frequency>;
+    /// Seventeen folded stages.
+    composed: DoublePendulum by Composed<Evi<1>, 17>;
+    /// A kick, a drift and a kick.
+    leapfrog: SpringPendulum by Evi<2>;
+    /// Newton's iteration on positions.
+    general: SpringPendulum by Evi<1>;
+    /// The same with time, constraints, forces and an input.
+    driven: DrivenPendulum by Evi<1>;
+    /// With lost digits kept.
+    compensated: DoublePendulum by Compensated<Evi<1>>;
+    /// In up to sixteen parts.
+    rescued: DoublePendulum by Rescued<Evi<1>, 4>;
+    /// A quadratic part integrated exactly.
+    exact: DoublePendulum by MatrixEvi<2, LinearisedAt<[f64; 4]>>;
+    /// The same on Simpson's nodes.
+    exact_on_nodes: DoublePendulum by MatrixEvi<3, LinearisedAt<[f64; 4]>>;
+    /// On the null space of constraints of stated rank.
+    of_rank: TwoConstraintsOfRank by Evi<1>;
+    /// The classical form.
+    rattle: DoublePendulum by Rattle;
+}
+
+/// Of both constraints of the scene, both are independent.
+type TwoConstraintsOfRank = OfRank<DoublePendulum, 2>;
+
+/// Takes a step from a state of which the optimiser knows nothing.
+fn take<S, F, const N: usize>(system: S, scheme: F, start: [f64; N], step: impl Fn(&mut RunOf<S, F>) -> bool)
+where
+    S: MechanicalSystem<PerCoordinate<f64> = [f64; N]>,
+    F: Scheme<S>,
+{
+    let simulation = Simulation::new(system, black_box(scheme));
+    let run = simulation.start_projected(0.0, start, [0.0; N]).expect("near the constraints");
+    println!("{}", step(&mut black_box(run.with_tally(()))));
+}
+
+fn main() {
+    let double = || DoublePendulum { m1: 1.0, m2: 0.5, l1: 1.0, l2: 0.8, g: 9.81 };
+    let bent = [0.6, -0.8, 1.08, -1.44];
+    let midpoint = Evi::midpoint(0.01);
+    take(double(), midpoint, bent, folded);
+    take(double(), Evi::simpson(0.01).frequency(3.0), bent, folded_on_curves);
+    take(double(), midpoint.composed(Composition::kahan_li_8()), bent, composed);
+    let spring = || SpringPendulum { m: 1.0, l: 1.0, k: 1e3, g: 9.81 };
+    take(spring(), Evi::trapezoid(0.01), [1.0, 0.0], leapfrog);
+    take(spring(), midpoint, [1.0, 0.0], general);
+    take(DrivenPendulum { m: 1.0, l: 1.0, c: 0.1, w: 2.0, g: 9.81 }, midpoint, [0.6, -0.8], driven);
+    take(double(), midpoint.compensated(), bent, compensated);
+    take(double(), midpoint.rescued::<4>(), bent, rescued);
+    let hanging = [0.0, -1.0, 0.0, -1.8];
+    take(double(), Evi::trapezoid(0.01).linearised_at(hanging), bent, exact);
+    take(double(), Evi::simpson(0.01).linearised_at(hanging), bent, exact_on_nodes);
+    take(OfRank::<_, 2>(double()), midpoint, bent, of_rank);
+    take(double(), Rattle::new(0.01), bent, rattle);
+}
