@@ -127,7 +127,7 @@ mod refused {
         assert!(matches!(refusal, ProposalError::Growth { .. }), "{refusal}");
     }
 
-    /// A bead at the end of its rail, where the force is infinite.
+    /// A bead that leaves its rail at once, beyond whose end the potential has no value.
     #[derive(Clone, Copy, MechanicalSystem)]
     #[evi(coordinates(x), kinetic = 0.5 * m * der(x).powi(2), potential = k * x.sqrt())]
     struct Well {
@@ -137,7 +137,7 @@ mod refused {
 
     #[test]
     fn a_motion_without_a_first_step() {
-        let refusal = refusal(&Well { m: 1.0, k: 3.0 }, Start { q: [0.0], v: [1.0] }, 1.0, 1e-6);
+        let refusal = refusal(&Well { m: 1.0, k: 3.0 }, Start { q: [1e-12], v: [-1.0] }, 1.0, 1e-6);
         assert!(matches!(refusal, ProposalError::Step { .. }), "{refusal}");
     }
 }
