@@ -169,18 +169,21 @@ impl<S: MechanicalSystem> Mechanics<S> {
         if hides_less { by_coordinates } else { by_kinetic_energy }
     }
 
-    fn rank_of(forces: S::PerConstraint<S::PerCoordinate<f64>>) -> ConstraintRank<S> {
-        let values: S::PerConstraint<f64> = singular_values(forces.clone());
+    #[inline(never)]
+    fn rank_of(mut forces: S::PerConstraint<S::PerCoordinate<f64>>) -> ConstraintRank<S> {
+        let mut values = S::PerConstraint::<f64>::from_fn(|_| 0.0);
+        singular_values(forces.clone().as_mut(), values.as_mut());
         let least = tolerance::<S>(&values);
         let rank = values.as_ref().iter().filter(|value| **value > least).count();
         let mut order = S::PerConstraint::<usize>::from_fn(|c| c);
         let mut basis = S::PerConstraint::<S::PerCoordinate<f64>>::from_fn(|_| Array::from_fn(|_| 0.0));
         // Of full rank, the last one in this order is the most dependent.
-        orthonormal::span(&forces, rank, &mut basis, &mut order);
+        orthonormal::span(forces.as_mut(), rank, basis.as_mut(), order.as_mut());
         ConstraintRank { singular_values: values, rank, order }
     }
 
     /// The columns of `L⁻¹ Gᵀ`, scaled to length 1; with `diag √|Mᵢᵢ|` for `L` where `M` is not positive definite.
+    #[inline(never)]
     fn unit_constraint_forces(
         &self,
         t: f64,
