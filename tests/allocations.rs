@@ -10,11 +10,13 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::hint::black_box;
+use std::time::Duration;
 
 use evi_core::baseline::{GeneralizedAlpha, ImplicitMidpoint, Rattle, Rk4, Shake};
 use evi_core::generic::{GenericEvi, GenericGalerkin, GenericScheme, GenericSystem};
-use evi_core::integrator::OfRank;
+use evi_core::integrator::{Diagnostics, OfRank};
 use evi_core::prelude::*;
+use evi_core::watch::{EnergyDrift, Limits};
 use evi_examples::{
     DoublePendulum, DrivenPendulum, FermiPastaUlam, HarmonicOscillator, Pendulum, SphericalPendulum, Start,
     StiffSpringPendulum,
@@ -266,6 +268,23 @@ fn going_to_a_time_does_not_allocate() {
     let mut run = Simulation::new(DOUBLE, Evi::midpoint(0.01)).start(mild().q, mild().v).unwrap();
     assert_eq!(allocations(|| assert!(run.advance_to(10.0).is_ok())), 0);
     assert_eq!(run.steps(), 1_000);
+}
+
+#[test]
+fn watching_does_not_allocate() {
+    let run = Simulation::new(DOUBLE, Evi::midpoint(0.01)).start(mild().q, mild().v).unwrap();
+    let mut run = run.with_tally(Diagnostics::default());
+    let limits = Limits::of(&run)
+        .energy_change(1.0)
+        .constraint(1e-12)
+        .hidden_constraint(1e-12)
+        .steps(2_000)
+        .wall_time(Duration::from_secs(3600));
+    let mut watch = (EnergyDrift::of(&run), limits);
+    assert_eq!(allocations(|| assert!(run.advance_observed(10.0, &mut watch).is_ok())), 0);
+    assert_eq!(run.steps(), 1_000);
+    // What is written down asks for memory.
+    assert!(allocations(|| drop(run.checkpoint())) > 0);
 }
 
 #[test]

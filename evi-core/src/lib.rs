@@ -30,9 +30,9 @@
 //!
 //! # Layers
 //!
-//! [`mod@array`], [`scalar`], [`system`] and [`scheme`] stand at the bottom; above them `newton` and [`linear`], then
+//! [`mod@array`], [`scalar`], [`memory`], [`system`] and [`scheme`] stand at the bottom; above them `newton` and [`linear`], then
 //! [`mechanics`] (energies, projections, the equations of one step), then [`integrator`] (one-step maps and runs),
-//! and beside the integrators [`baseline`], [`generic`], [`comparison`] and [`report`]. Imports point downwards.
+//! and beside the integrators [`baseline`], [`generic`], [`comparison`], [`report`] and [`watch`]. Imports point downwards.
 //!
 //! # Features
 //!
@@ -41,6 +41,7 @@
 //! | `std` | yes | trajectories on the heap; comparisons; elementary functions of the platform. Without it the crate is `no_std` |
 //! | `dispatch` | yes | `Galerkin` and `Gauss` steps in the vector instructions of the machine that the program runs on |
 //! | `derive` | yes | re-exports `#[derive(MechanicalSystem)]` |
+//! | `serde` | no | [`integrator::Checkpoint`] can be serialised |
 //! | `source` | no | [`system::MechanicalSystem::SOURCE`] holds the generated code, to read |
 //! | `generic` | no | `generic::GenericEvi` for systems of run-time size; [`scalar::Scalar`] for the dual numbers of num-dual |
 
@@ -58,17 +59,21 @@ pub mod generic;
 pub mod integrator;
 pub mod linear;
 pub mod mechanics;
+pub mod memory;
 mod newton;
 pub mod report;
 pub mod scalar;
 pub mod scheme;
 pub mod system;
+pub mod watch;
 
 #[doc(hidden)]
 pub mod __private;
 
 /// What a simulation needs: the derive, schemes, and runs.
 pub mod prelude {
+    #[cfg(feature = "std")]
+    pub use crate::integrator::{Checkpoint, ResumeError};
     pub use crate::integrator::{
         Compensable, Composition, Evi, OneStep, Run, Scheme, Simulation, StartError, StepError, Symmetric,
     };

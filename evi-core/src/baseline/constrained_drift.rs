@@ -5,6 +5,7 @@ use crate::array::Array;
 use crate::integrator::{IterationFailure, StepError, Tally};
 use crate::linear::{Factorization, largest_magnitude};
 use crate::mechanics::{AsScene, CoordinateMatrix, Directions, ForcePoint, Mechanics, relative};
+use crate::memory::memory;
 use crate::newton::{self, Converged};
 use crate::scheme::SchemeError;
 use crate::system::MechanicalSystem;
@@ -172,3 +173,7 @@ impl<S: MechanicalSystem> ConstrainedDrift<S> {
         }
     }
 }
+
+memory!([S: MechanicalSystem] ConstrainedDrift<S>, |words|
+    Self { mechanics: _, inverse_mass: _, h: _, impulses } => { words.part(impulses) }
+);

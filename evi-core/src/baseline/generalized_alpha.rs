@@ -6,6 +6,7 @@ use crate::array::Array;
 use crate::integrator::{IterationFailure, OneStep, Scheme, StepError, Tally};
 use crate::linear::{SingularMatrix, constraint_index, largest_magnitude, unknowns};
 use crate::mechanics::{Acceleration, Mechanics, State};
+use crate::memory::memory;
 use crate::newton::{self, Converged, NotConverged, SLOWEST_CHORD};
 use crate::scheme::{SchemeError, checked_step_size};
 use crate::system::MechanicalSystem;
@@ -297,5 +298,33 @@ impl<S: MechanicalSystem> GeneralizedAlphaStep<S> {
         let scale = self.mechanics().constraint_scale(&jacobian, &reach);
         // Written so that a NaN is refused.
         (0..S::N_CONSTRAINTS).all(|c| residual[c].abs() <= LARGEST_RESIDUAL * scale[c])
+    }
+}
+
+memory!([S: MechanicalSystem] GeneralizedAlphaStep<S>, |words|
+    Self { equations: _, h: _, coefficients, past } => {
+        words.fixed(coefficients.gamma);
+        words.optional(past, Past::none);
+    }
+);
+
+memory!([S: MechanicalSystem] Past<S>, |words| Self { q, v, average, solution, solutions } => {
+    words.numbers(q);
+    words.numbers(v);
+    words.numbers(average);
+    words.numbers(solution);
+    words.part(solutions);
+});
+
+impl<S: MechanicalSystem> Past<S> {
+    fn none() -> Self {
+        let none = S::PerCoordinate::<f64>::from_fn(|_| 0.0);
+        Self {
+            q: none.clone(),
+            v: none.clone(),
+            average: none,
+            solution: Array::from_fn(|_| 0.0),
+            solutions: Prediction::default(),
+        }
     }
 }

@@ -6,6 +6,7 @@ use crate::array::Array;
 use crate::integrator::{IterationFailure, OneStep, Scheme, StepError, Symmetric, Tally};
 use crate::linear::{largest_magnitude, unknowns};
 use crate::mechanics::{Mechanics, State};
+use crate::memory::memory;
 use crate::newton::{self, Converged};
 use crate::scheme::{SchemeError, checked_step_size};
 use crate::system::MechanicalSystem;
@@ -175,3 +176,7 @@ impl<S: MechanicalSystem> ImplicitMidpointStep<S> {
         }
     }
 }
+
+memory!([S: MechanicalSystem] ImplicitMidpointStep<S>, |words|
+    Self { equations: _, h: _, past } => { words.part(past) }
+);

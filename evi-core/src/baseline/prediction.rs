@@ -1,6 +1,7 @@
 //! First guesses from the past.
 
 use crate::array::Array;
+use crate::memory::memory;
 
 /// The last values of a quantity that is found anew in every step: the next one lies near the parabola through them.
 pub(super) struct Prediction<A> {
@@ -42,6 +43,10 @@ impl<A: Array<f64>> Prediction<A> {
         self.values = None;
     }
 }
+
+memory!([A: Array<f64>] Prediction<A>, |words| Self { values } => {
+    words.optional(values, || core::array::from_fn(|_| A::from_fn(|_| 0.0)));
+});
 
 #[cfg(test)]
 mod tests {

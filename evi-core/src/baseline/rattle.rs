@@ -4,6 +4,7 @@ use super::constrained_drift::{ConstrainedDrift, DriftStart};
 use crate::integrator::{OneStep, Scheme, StepError, Symmetric, Tally};
 use crate::linear::{Factorization, SingularMatrix};
 use crate::mechanics::{AsScene, Mechanics, ProjectionError, State};
+use crate::memory::memory;
 use crate::scheme::{SchemeError, checked_step_size};
 use crate::system::MechanicalSystem;
 
@@ -104,3 +105,5 @@ impl<S: MechanicalSystem> RattleStep<S> {
         Ok(())
     }
 }
+
+memory!([S: MechanicalSystem] RattleStep<S>, |words| Self { drift } => { words.part(drift) });

@@ -3,6 +3,7 @@
 use crate::array::Array;
 use crate::integrator::{OneStep, Scheme, StepError, Tally};
 use crate::mechanics::{Mechanics, State};
+use crate::memory::memory;
 use crate::scheme::{SchemeError, checked_step_size};
 use crate::system::MechanicalSystem;
 
@@ -94,3 +95,5 @@ impl<S: MechanicalSystem> OneStep<S> for Rk4Step<S> {
         state.replace(t, q, v, p)
     }
 }
+
+memory!([S: MechanicalSystem] Rk4Step<S>, |_words| Self { mechanics: _, h: _ } => {});

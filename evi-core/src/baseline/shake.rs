@@ -4,6 +4,7 @@ use super::constrained_drift::{ConstrainedDrift, DriftStart};
 use crate::array::Array;
 use crate::integrator::{OneStep, Scheme, StepError, Tally};
 use crate::mechanics::{Mechanics, State};
+use crate::memory::memory;
 use crate::scheme::{SchemeError, checked_step_size};
 use crate::system::MechanicalSystem;
 
@@ -121,3 +122,17 @@ impl<S: MechanicalSystem> Ahead<S> {
             && inputs.as_ref() == state.inputs.as_ref()
     }
 }
+
+memory!([S: MechanicalSystem] ShakeStep<S>, |words| Self { drift, ahead } => {
+    words.part(drift);
+    words.optional(ahead, || {
+        let none = S::PerCoordinate::<f64>::from_fn(|_| 0.0);
+        Ahead { from: State::blank(), leap: Leap { v: none.clone(), q: none } }
+    });
+});
+
+memory!([S: MechanicalSystem] Ahead<S>, |words| Self { from, leap: Leap { v, q } } => {
+    words.part(from);
+    words.numbers(v);
+    words.numbers(q);
+});

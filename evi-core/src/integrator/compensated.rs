@@ -1,7 +1,9 @@
 //! Compensated summation: the digits that a state loses are kept for the next step.
 
 use super::{OneStep, Scheme, StepError, Tally};
+use crate::array::Array;
 use crate::mechanics::{LostDigits, Mechanics, State};
+use crate::memory::{Memory, memory};
 use crate::scheme::SchemeError;
 use crate::system::MechanicalSystem;
 
@@ -85,6 +87,11 @@ struct Reached<S: MechanicalSystem> {
 }
 
 impl<S: MechanicalSystem> Reached<S> {
+    fn none() -> Self {
+        let none = S::PerCoordinate::<f64>::from_fn(|_| 0.0);
+        Self { q: none.clone(), p: none, lost: LostDigits::none() }
+    }
+
     /// Time and inputs may have been set anew since.
     fn is(&self, state: &State<S>) -> bool {
         // Equality of bits: digits lost by one state are wrong for its neighbour.
@@ -119,3 +126,14 @@ impl<S: MechanicalSystem, M: CompensableStep<S>> OneStep<S> for CompensatedStep<
         Ok(())
     }
 }
+
+memory!([S: MechanicalSystem, M: Memory] CompensatedStep<S, M>, |words| Self { map, reached } => {
+    words.part(map);
+    words.optional(reached, Reached::none);
+});
+
+memory!([S: MechanicalSystem] Reached<S>, |words| Self { q, p, lost } => {
+    words.numbers(q);
+    words.numbers(p);
+    words.part(lost);
+});

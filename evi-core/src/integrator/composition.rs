@@ -6,6 +6,7 @@
 
 use super::{Compensable, CompensableStep, OneStep, Rescued, Scheme, StepError, Tally};
 use crate::mechanics::{LostDigits, Mechanics, State};
+use crate::memory::{Memory, memory};
 use crate::scheme::SchemeError;
 use crate::system::MechanicalSystem;
 
@@ -277,6 +278,11 @@ impl<S: MechanicalSystem, M: CompensableStep<S>, const N: usize> CompensableStep
 }
 
 impl<S: MechanicalSystem, M, const N: usize> ComposedStep<S, M, N> {
+    /// The maps of the stages, in their order.
+    pub const fn stages(&self) -> &[M; N] {
+        &self.stages
+    }
+
     /// Overwrites `state` with where the stages lead one after the other.
     #[inline(always)]
     fn take_stages(
@@ -295,6 +301,18 @@ impl<S: MechanicalSystem, M, const N: usize> ComposedStep<S, M, N> {
         Ok(())
     }
 }
+
+memory!([S: MechanicalSystem, M: Memory, const N: usize] ComposedStep<S, M, N>, |words|
+    Self { mechanics: _, stages, starts, h } => {
+        for start in starts {
+            words.fixed(*start);
+        }
+        words.fixed(*h);
+        for stage in stages {
+            words.part(stage);
+        }
+    }
+);
 
 #[cfg(test)]
 mod tests {

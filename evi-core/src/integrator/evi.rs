@@ -12,9 +12,10 @@ use crate::mechanics::{
     ConstantLegendre, DiscreteLagrangian, Dropped, FoldedStep, ImplicitStep, LeapfrogStep, Lost, LostDigits,
     Mechanics, ProjectionError, RoundOff, State, StepSolution, StepStart, Sum,
 };
+use crate::memory::memory;
 use crate::newton::Tally;
 use crate::scheme::{
-    Frequency, Interpolant, Linear, Quadrature, SceneFrequencies, SchemeError, checked_step_size,
+    Frequency, Interpolant, Linear, Quadrature, Resonance, SceneFrequencies, SchemeError, checked_step_size,
 };
 use crate::system::MechanicalSystem;
 
@@ -135,6 +136,7 @@ impl<S: MechanicalSystem, const K: usize, F: Interpolant<S>> Scheme<S> for Evi<K
         if !self.allows_soft_modes {
             check_soft_coordinates::<S, K>(&self.interpolant, &mechanics.constants, &quadrature, h)?;
         }
+        let frequencies = Array::from_fn(|i| self.interpolant.frequency(&mechanics.constants, i));
         let action = DiscreteLagrangian::new(mechanics, table, quadrature, h);
         // Where M or A is singular, the constraints are needed to determine the motion: the general step uses them.
         let folded = if FoldedStep::<S, F>::EXISTS { FoldedStep::new(&action).ok() } else { None };
@@ -146,7 +148,7 @@ impl<S: MechanicalSystem, const K: usize, F: Interpolant<S>> Scheme<S> for Evi<K
         let legendre =
             if ConstantLegendre::<S>::EXISTS { ConstantLegendre::new(&action.mechanics).ok() } else { None };
         let (folded, leapfrog) = (folded.map(MultiplierStep::new), leapfrog.map(MultiplierStep::new));
-        Ok(EviStep { action, folded, leapfrog, legendre, sags: Sags::none() })
+        Ok(EviStep { action, frequencies, folded, leapfrog, legendre, sags: Sags::none() })
     }
 }
 
@@ -159,6 +161,8 @@ type Taken<S, R> = (<S as MechanicalSystem>::PerCoordinate<f64>, LostInStep<S, R
 /// The one-step map of an [`Evi`] for a scene, with everything folded in that is constant for a run.
 pub struct EviStep<S: MechanicalSystem, F: Interpolant<S>, const K: usize> {
     action: DiscreteLagrangian<S, F::Table<K>, K>,
+    /// Of the curves.
+    frequencies: S::PerCoordinate<Frequency>,
     /// The step of a quadratic Lagrangian.
     folded: Option<MultiplierStep<S, FoldedStep<S, F>>>,
     /// The step of a potential that acts at the ends alone.
@@ -273,6 +277,23 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
         Ok((solution.difference, [lost_q, lost_p]))
     }
 
+    /// How far the frequency of every coordinate is from where steps lose their meaning.
+    ///
+    /// ```
+    /// use evi_core::prelude::*;
+    /// # #[derive(MechanicalSystem)]
+    /// # #[evi(coordinates(theta), kinetic = 0.5 * der(theta).powi(2), potential = -rate.powi(2) * theta.cos())]
+    /// # struct Pendulum { rate: f64 }
+    /// let run = Simulation::new(Pendulum { rate: 3.0 }, Evi::simpson(0.5).frequency(3.0)).start([1.0], [0.0])?;
+    /// let [theta] = run.map().resonances();
+    /// assert!(theta.phase == 1.5 && theta.margin() > 0.5);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn resonances(&self) -> S::PerCoordinate<Resonance> {
+        let quadrature = self.action.quadrature();
+        Array::from_fn(|i| Resonance::of(self.frequencies[i], quadrature, self.action.h()))
+    }
+
     /// The two-step view: `q_next` from two consecutive configurations, the first at time `t_prev`.
     ///
     /// Solves `D₂L_d(q_prev, q_curr) + f⁺ + D₁L_d(q_curr, q_next) + f⁻ − Gᵀ(q_curr) ℓ = 0`, `φ(q_next) = 0`; for scenes
@@ -326,3 +347,17 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
         Ok((v, momentum))
     }
 }
+
+memory!([S: MechanicalSystem, F: Interpolant<S>, const K: usize] EviStep<S, F, K>, |words|
+    Self { action, frequencies: _, folded, leapfrog, legendre: _, sags } => {
+        action.for_each_number(|number| words.fixed(number));
+        // Which of the steps there are depends on the scene and the scheme alone.
+        if let Some(folded) = folded {
+            words.part(folded);
+        }
+        if let Some(leapfrog) = leapfrog {
+            words.part(leapfrog);
+        }
+        words.part(sags);
+    }
+);

@@ -8,7 +8,8 @@ use crate::mechanics::{
     Dropped, ImplicitStep, ImpulseStep, MatrixAction, Mechanics, QuadraticPart, Rounded, State, StepModes,
     StepStart,
 };
-use crate::scheme::{Mollifier, Quadrature, SchemeError, checked_step_size};
+use crate::memory::memory;
+use crate::scheme::{Mollifier, Quadrature, SchemeError, checked_step_size, to_multiple_of_pi};
 use crate::system::MechanicalSystem;
 
 /// An exponential variational integrator that integrates a quadratic part of the Lagrangian exactly, and samples only the rest of
@@ -208,6 +209,14 @@ pub struct StepMode {
     pub condition: f64,
 }
 
+impl StepMode {
+    /// Distance of the phase from the nearest `kπ`, `k ≥ 1`, where the ends of a step do not determine the mode between them; infinite for a
+    /// hyperbolic mode.
+    pub fn to_resonance(&self) -> f64 {
+        if self.squared_frequency < 0.0 { f64::INFINITY } else { to_multiple_of_pi(self.phase) }
+    }
+}
+
 /// The one-step map of a [`MatrixEvi`] for a scene.
 pub struct MatrixEviStep<S: MechanicalSystem, const K: usize> {
     form: Form<S, K>,
@@ -277,3 +286,14 @@ fn advance<S: MechanicalSystem, const K: usize>(
         .map_err(|cause| StepError::Projection { t, cause })?;
     state.replace(t, q, v, momentum.0)
 }
+
+memory!([S: MechanicalSystem, const K: usize] MatrixEviStep<S, K>, |words| Self { form, modes: _ } => {
+    match form {
+        Form::Impulse { mechanics: _, step, h: _ } => {
+            step.free().for_each_number(|number| words.fixed(number));
+            words.part(step);
+        }
+        // Its iteration begins from the state.
+        Form::General(action) => action.for_each_number(|number| words.fixed(number)),
+    }
+});

@@ -4,6 +4,8 @@
 //! [`OneStep`] map that holds everything that is constant for the run. A [`Simulation`] joins a scene with a scheme;
 //! a [`Run`] is a simulation at a state.
 
+#[cfg(feature = "std")]
+mod checkpoint;
 mod compensated;
 mod composition;
 mod curves;
@@ -25,7 +27,9 @@ mod trajectory;
 
 #[cfg(feature = "generic")]
 pub(crate) use crate::mechanics::CONSISTENCY;
-pub use crate::newton::{Fallbacks, Statistics, Tally};
+pub use crate::newton::{Diagnostics, Fallbacks, Statistics, Tally, Worst};
+#[cfg(feature = "std")]
+pub use checkpoint::{Checkpoint, ResumeError};
 pub use compensated::{Compensable, CompensableStep, Compensated, CompensatedStep};
 pub use composition::{Composed, ComposedStep, Composition, Symmetric};
 pub use evi::{Evi, EviStep};
@@ -47,6 +51,7 @@ pub use trajectory::{Interrupted, Trajectory};
 
 use crate::linear::SingularMatrix;
 use crate::mechanics::{Mechanics, NOTHING, ProjectionError, State};
+use crate::memory::Memory;
 use crate::newton::NotConverged;
 use crate::scheme::SchemeError;
 use crate::system::MechanicalSystem;
@@ -63,8 +68,8 @@ pub trait Scheme<S: MechanicalSystem> {
     fn prepare(&self, mechanics: Mechanics<S>) -> Result<Self::Step, SchemeError>;
 }
 
-/// A map from the state at `t` to the state at `t + h`.
-pub trait OneStep<S: MechanicalSystem> {
+/// A map from the state at `t` to the state at `t + h`, with a [`Memory`] of the steps before.
+pub trait OneStep<S: MechanicalSystem>: Memory {
     /// Step size; negative for a map that goes back in time.
     fn h(&self) -> f64;
 

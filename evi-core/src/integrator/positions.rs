@@ -8,7 +8,9 @@ use super::{IterationFailure, StepError};
 use crate::array::Array;
 use crate::linear::{Factorization, constraint_index, largest_magnitude};
 use crate::mechanics::{ImplicitStep, Mechanics, StepSolution, StepStart};
+use crate::memory::memory;
 use crate::newton::{self, Converged, NotConverged, Tally};
+use crate::scalar::Scalar;
 use crate::system::MechanicalSystem;
 
 /// After a correction `r` below the root of this, its matrix is good for one more. What Newton leaves of `r` is about `r²`, its matrix then
@@ -86,6 +88,13 @@ impl<S: MechanicalSystem> Sags<S> {
     }
 }
 
+memory!([S: MechanicalSystem] Sags<S>, |words| Self { predicted, previous, was_right, is_trusted } => {
+    words.numbers(predicted);
+    words.part(previous);
+    words.flag(was_right);
+    words.flag(is_trusted);
+});
+
 /// Solves the equations of a step.
 ///
 /// # Errors
@@ -132,8 +141,10 @@ where
     let mut weights = S::PerCoordinate::<f64>::from_fn(|_| 0.0);
     let mut previous = f64::INFINITY;
     let mut corrections = 0;
+    tally.begin_iteration();
     for fresh in 0..FRESH {
         let (mut update, kkt) = equations.linearize(start, &mut solution);
+        tally.see_matrix(|| kkt.conditioning());
         let factors = kkt.factor_unscaled()?;
         factors.solve(&mut update);
         subtract(&mut solution, &update);
@@ -145,6 +156,7 @@ where
             }
         }
         let mut length = squared_length::<S>(&weights, |i| update[i]);
+        tally.see_correction(|| Scalar::sqrt(length));
         // Written so that a NaN does not contract.
         let contracts = length <= SLOWEST * previous;
         if !contracts {
@@ -166,6 +178,7 @@ where
             kick_after(equations, start, &mut solution, &residual, &update);
             corrections += 1;
             let last = squared_length::<S>(&weights, |i| update[i]);
+            tally.see_correction(|| Scalar::sqrt(last));
             if newton::squares_predict_round_off(last, length) {
                 tally.count_corrections(corrections);
                 return Some(solution);
@@ -260,10 +273,12 @@ pub(super) fn iterate<S: MechanicalSystem, E: ImplicitStep<S>>(
     let mut solution = begun_at::<S>(difference);
     let mut constraint_residual = 0.0;
     let mut smallest_pivot_ratio = 1.0_f64;
+    tally.begin_iteration();
     let mut last = 0.0;
     let iteration = newton::iterate(|correction| {
         let (mut update, kkt) = equations.linearize(start, &mut solution);
         constraint_residual = largest_magnitude(update.as_ref()[S::N_COORDINATES..].iter().copied());
+        tally.see_matrix(|| kkt.conditioning());
         let kkt = E::factor(kkt).map_err(|matrix| IterationFailure::Singular { correction, matrix })?;
         smallest_pivot_ratio = smallest_pivot_ratio.min(kkt.pivot_ratio());
         if kkt.is_fallback() {
@@ -272,6 +287,7 @@ pub(super) fn iterate<S: MechanicalSystem, E: ImplicitStep<S>>(
         kkt.solve(&mut update);
         subtract(&mut solution, &update);
         last = kkt.relative_length(|i| update[i], |i| start.q[i].abs() + solution.difference[i].abs());
+        tally.see_correction(|| last);
         Ok(last)
     });
     match iteration {

@@ -2,6 +2,7 @@
 
 use super::{Compensable, CompensableStep, OneStep, Scheme, StepError, Symmetric, Tally};
 use crate::mechanics::{LostDigits, Mechanics, State};
+use crate::memory::{Memory, memory};
 use crate::scheme::SchemeError;
 use crate::system::MechanicalSystem;
 
@@ -161,3 +162,16 @@ impl<S: MechanicalSystem, M: CompensableStep<S>, const K: usize> CompensableStep
         }
     }
 }
+
+memory!([] Rescues, |words| Self { steps, parts } => {
+    words.count(steps);
+    words.count(parts);
+});
+
+memory!([M: Memory, const K: usize] RescuedStep<M, K>, |words| Self { whole, parts, rescues } => {
+    words.part(whole);
+    for part in parts {
+        words.part(part);
+    }
+    words.part(rescues);
+});

@@ -48,6 +48,17 @@ impl<S: MechanicalSystem, M: OneStep<S>> Run<S, M> {
 }
 
 impl<S: MechanicalSystem, M: OneStep<S>, T: Tally> Run<S, M, T> {
+    /// The run that has come from `start_time` to `state` in so many steps.
+    #[cfg(feature = "std")]
+    pub(super) const fn resumed(map: M, state: State<S>, start_time: f64, steps: u64, tally: T) -> Self {
+        Self { map, state, start_time, steps, tally }
+    }
+
+    /// Time of the state that the run has started from.
+    pub const fn start_time(&self) -> f64 {
+        self.start_time
+    }
+
     /// The run from where it stands, with another tally of what happens inside its steps:
     /// `run.with_tally(Statistics::default())` counts Newton's corrections too.
     pub fn with_tally<U: Tally>(self, tally: U) -> Run<S, M, U> {
@@ -135,6 +146,7 @@ impl<S: MechanicalSystem, M: OneStep<S>, T: Tally> Run<S, M, T> {
         if S::N_INPUTS > 0 {
             self.check_inputs()?;
         }
+        self.tally.begin_step(self.steps);
         self.map.advance(&mut self.state, &mut self.tally)?;
         self.steps += 1;
         // A product, since a sum of 1e6 step sizes loses six digits.
@@ -190,7 +202,7 @@ impl<S: MechanicalSystem, M: OneStep<S>, T: Tally> Run<S, M, T> {
     }
 
     /// Number of whole steps nearest to the span from here to `t`.
-    fn steps_to(&self, t: f64) -> Result<u64, StepError> {
+    pub(crate) fn steps_to(&self, t: f64) -> Result<u64, StepError> {
         steps_between(self.state.t, t, self.map.h())
     }
 }

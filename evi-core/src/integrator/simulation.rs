@@ -234,6 +234,11 @@ impl<S: MechanicalSystem, F: Scheme<S>> Simulation<S, F> {
         &self.system
     }
 
+    /// The scheme.
+    pub const fn scheme(&self) -> &F {
+        &self.scheme
+    }
+
     /// A run from positions and velocities at time 0 that satisfy the constraints; its inputs are zero until
     /// [`Run::set_inputs`].
     ///

@@ -10,7 +10,7 @@
 //! `D K D` takes its place: it has a unit diagonal in `A` and unit rows in `G₀` in the metric of `A`, so that its unknowns all
 //! carry the unit of √A·q. `D` holds powers of two: scaling commits no rounding error.
 
-use super::{Factorization, SingularMatrix, largest_magnitude};
+use super::{Conditioning, Factorization, SingularMatrix, largest_magnitude};
 use crate::array::Array;
 use crate::scalar::Scalar;
 use crate::system::MechanicalSystem;
@@ -95,6 +95,14 @@ impl<S: MechanicalSystem> Kkt<S> {
         // (a + b)² ≤ 2 a² + 2 b².
         let (per_reach, per_metric) = (2.0 / reach, 2.0 / metric.max(f64::MIN_POSITIVE));
         Array::from_fn(|i| per_reach + inertia[i] * per_metric)
+    }
+
+    /// How well the matrix determines its unknowns, in one unit.
+    pub(crate) fn conditioning(&self) -> Conditioning {
+        let scale = self.scale();
+        let scaled: S::PerUnknown<S::PerUnknown<f64>> =
+            Array::from_fn(|row| Array::from_fn(|col| self.rows[row][col] * scale[row] * scale[col]));
+        Conditioning::of::<_, _, S::PerUnknown<usize>>(&scaled)
     }
 
     /// Factors a matrix that may have entries outside of the scene's pattern.

@@ -5,6 +5,7 @@
 //! every pattern ([`DenseLu`]), and one for constraints of a stated rank ([`NullSpace`]).
 
 mod closed_form;
+mod conditioning;
 mod elimination;
 #[cfg(feature = "std")]
 mod in_place;
@@ -19,12 +20,11 @@ mod symmetric_eigen;
 mod triangular;
 
 pub use closed_form::{Inverse0, Inverse1, Inverse2};
+pub use conditioning::Conditioning;
 pub use elimination::{Elimination, Guarded, reciprocal_pivot};
 #[cfg(feature = "std")]
 pub(crate) use in_place::InPlaceLu;
-#[cfg(feature = "generic")]
-pub(crate) use kkt::reciprocal_power_of_two;
-pub(crate) use kkt::{FactoredKkt, Kkt, constraint_index, unknowns};
+pub(crate) use kkt::{FactoredKkt, Kkt, constraint_index, reciprocal_power_of_two, unknowns};
 #[cfg(feature = "std")]
 pub(crate) use lane_ldl::{LaneGram, LaneMass};
 pub use null_space::NullSpace;

@@ -10,7 +10,7 @@ pub(crate) type Directions<S> =
     <S as MechanicalSystem>::PerConstraint<<S as MechanicalSystem>::PerCoordinate<f64>>;
 
 /// A matrix over the constraints, by rows.
-type Gram<S> = <S as MechanicalSystem>::PerConstraint<<S as MechanicalSystem>::PerConstraint<f64>>;
+pub(super) type Gram<S> = <S as MechanicalSystem>::PerConstraint<<S as MechanicalSystem>::PerConstraint<f64>>;
 
 /// Where a sum begins: `−0 + x` is `x` to the last bit, so that the compiler leaves the addition out.
 pub(crate) const NOTHING: f64 = -0.0;

@@ -22,6 +22,7 @@
 use super::{ForceDerivatives, ForcePoint, Mechanics, State};
 use crate::array::Array;
 use crate::linear::{constraint_index, largest_magnitude};
+use crate::memory::memory;
 use crate::scheme::{LobattoNodes, NodalTables};
 use crate::system::MechanicalSystem;
 
@@ -47,6 +48,21 @@ impl<S: MechanicalSystem, const K: usize> Clone for Points<S, K> {
         Self { differences: self.differences.clone(), impulses: self.impulses.clone() }
     }
 }
+
+impl<S: MechanicalSystem, const K: usize> Points<S, K> {
+    /// All of them where the step begins.
+    pub(crate) fn none() -> Self {
+        Self {
+            differences: core::array::from_fn(|_| Array::from_fn(|_| 0.0)),
+            impulses: core::array::from_fn(|_| Array::from_fn(|_| 0.0)),
+        }
+    }
+}
+
+memory!([S: MechanicalSystem, const K: usize] Points<S, K>, |words| Self { differences, impulses } => {
+    words.part(differences);
+    words.part(impulses);
+});
 
 /// Where entries of the Newton matrix go: block `(a, b)` couples row `a` of the equations with point `b + 1` and impulse `b`.
 pub(crate) struct Blocks<'a> {
@@ -79,6 +95,17 @@ impl<S: MechanicalSystem, T: NodalTables<K>, const K: usize> GalerkinAction<S, T
 
     pub(crate) fn new(mechanics: Mechanics<S>, tables: T, h: f64) -> Self {
         Self { mechanics, nodes: LobattoNodes::new(), tables, h }
+    }
+
+    /// Calls `see` for the numbers that tell this action from another of its type: those of the curves.
+    pub(crate) fn for_each_number(&self, mut see: impl FnMut(f64)) {
+        for i in 0..S::N_COORDINATES {
+            for node in 0..=K {
+                let rates = self.tables.table(i).rates(node);
+                see(rates.start);
+                rates.differences.iter().copied().for_each(&mut see);
+            }
+        }
     }
 
     /// Step size.

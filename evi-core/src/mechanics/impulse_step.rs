@@ -58,6 +58,18 @@ impl<S: MechanicalSystem> ImpulseStep<S> {
         })
     }
 
+    /// Calls `see` for the numbers that tell this step from another of its type.
+    pub(crate) fn for_each_number(&self, mut see: impl FnMut(f64)) {
+        self.part.for_each_number(&mut see);
+        for i in 0..S::N_COORDINATES {
+            for j in 0..S::N_COORDINATES {
+                see(self.kick[i][j]);
+                see(self.drift.at(i, j));
+                see(self.filter.as_ref().map_or(0.0, |filter| filter[i][j]));
+            }
+        }
+    }
+
     /// `p + T (q − q_ref) − ½h ∂/∂q U(t, φ(hW) q)`.
     #[inline]
     fn kicked(

@@ -2,15 +2,26 @@
 
 use core::borrow::Borrow;
 
+use super::constraints::Gram;
 use super::{AsScene, CoordinateMatrix, Mechanics, NOTHING, Sum};
 use crate::array::Array;
-use crate::linear::{Factorization, SingularMatrix};
+use crate::linear::{Conditioning, Factorization, SingularMatrix, reciprocal_power_of_two};
 use crate::newton::Tally;
+use crate::scalar::Scalar;
 use crate::system::{LagrangianGradient, MechanicalSystem};
 
 /// Kinetic energy of the velocities that are removed, relative to that of the motion, up to which one projection does: the
 /// velocities are then below 1/128 of the motion's.
 const LARGEST_REST: f64 = 1.0 / 16384.0;
+
+/// How well `G M⁻¹ Gᵀ` determines multipliers, in units in which its diagonal is about 1.
+fn gram_conditioning<S: MechanicalSystem>(matrix: &Gram<S>) -> Conditioning {
+    let scale =
+        S::PerConstraint::<f64>::from_fn(|c| reciprocal_power_of_two(Scalar::sqrt(matrix[c][c].abs())));
+    let scaled: Gram<S> =
+        Array::from_fn(|row| Array::from_fn(|col| matrix[row][col] * scale[row] * scale[col]));
+    Conditioning::of::<_, _, S::PerConstraint<usize>>(&scaled)
+}
 
 /// `v = M⁻¹ (p − a)` with constant `M` and `a`.
 pub(crate) struct ConstantLegendre<S: MechanicalSystem> {
@@ -63,7 +74,9 @@ impl<S: MechanicalSystem> ConstantLegendre<S> {
         tally: &mut impl Tally,
     ) -> Result<S::GramFactors, SingularMatrix> {
         let directions = mechanics.constraint_directions(jacobian, &self.inverse_mass);
-        let gram = S::GramFactors::factor(&mechanics.gram_matrix::<AsScene>(jacobian, &directions))?;
+        let matrix = mechanics.gram_matrix::<AsScene>(jacobian, &directions);
+        tally.see_matrix(|| gram_conditioning::<S>(&matrix));
+        let gram = S::GramFactors::factor(&matrix)?;
         if gram.is_fallback() {
             tally.count_fallback();
         }

@@ -73,6 +73,21 @@ impl<S: MechanicalSystem, const K: usize> MatrixAction<S, K> {
         }
     }
 
+    /// Calls `see` for the numbers that tell this action from another of its type.
+    pub(crate) fn for_each_number(&self, mut see: impl FnMut(f64)) {
+        self.part.for_each_number(&mut see);
+        for node in 0..K {
+            see(self.quadrature.offsets()[node]);
+            see(self.quadrature.weights()[node]);
+            for i in 0..S::N_COORDINATES {
+                for j in 0..S::N_COORDINATES {
+                    see(self.nodes[node].even[i][j]);
+                    see(self.nodes[node].odd[i][j]);
+                }
+            }
+        }
+    }
+
     #[inline]
     fn impulses(
         &self,

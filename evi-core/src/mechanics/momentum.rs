@@ -58,7 +58,9 @@ impl<S: MechanicalSystem> Mechanics<S> {
         let mut impulse = S::PerConstraint::<f64>::from_fn(|_| 0.0);
         let mut correct = || -> Result<f64, ProjectionError> {
             let (gradient, hessian) = S::lagrangian_derivatives(&self.constants, t, q, &v);
-            let kkt = self.mass_kkt(hessian.as_ref(), jacobian.as_ref()).factor()?;
+            let kkt = self.mass_kkt(hessian.as_ref(), jacobian.as_ref());
+            tally.see_matrix(|| kkt.conditioning());
+            let kkt = kkt.factor()?;
             if kkt.is_fallback() {
                 tally.count_fallback();
             }

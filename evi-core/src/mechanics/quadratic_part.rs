@@ -51,6 +51,15 @@ impl<S: MechanicalSystem> QuadraticPart<S> {
         })
     }
 
+    /// Calls `see` for every number of the split.
+    pub(crate) fn for_each_number(&self, mut see: impl FnMut(f64)) {
+        for i in 0..S::N_COORDINATES {
+            see(self.reference[i]);
+            (0..S::N_COORDINATES).for_each(|j| see(self.stiffness[i][j]));
+        }
+        (0..S::N_CONSTRAINTS).for_each(|c| see(self.multipliers[c]));
+    }
+
     /// With stiffness, reference and multipliers of a linearisation.
     pub fn of(mechanics: &Mechanics<S>, linearisation: &Linearisation<S>) -> Self {
         let mut curvature: Rows<S> = Array::from_fn(|_| Array::from_fn(|_| 0.0));

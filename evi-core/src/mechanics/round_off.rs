@@ -10,6 +10,7 @@
 use core::borrow::Borrow;
 
 use crate::array::Array;
+use crate::memory::memory;
 use crate::system::MechanicalSystem;
 
 /// Positions or momenta while a step adds to them.
@@ -232,3 +233,8 @@ impl<S: MechanicalSystem> Clone for LostDigits<S> {
         Self { q: self.q.clone(), p: self.p.clone() }
     }
 }
+
+memory!([S: MechanicalSystem] LostDigits<S>, |words| Self { q, p } => {
+    words.numbers(q);
+    words.numbers(p);
+});

@@ -2,6 +2,8 @@
 
 use core::fmt;
 
+use crate::array::Array;
+use crate::memory::memory;
 use crate::system::MechanicalSystem;
 
 /// Time, configuration, momentum, the velocity that belongs to the momentum, and the inputs of the step that begins here.
@@ -16,6 +18,12 @@ pub struct State<S: MechanicalSystem> {
 }
 
 impl<S: MechanicalSystem> State<S> {
+    /// Zeros, for numbers to come.
+    pub(crate) fn blank() -> Self {
+        let none = S::PerCoordinate::<f64>::from_fn(|_| 0.0);
+        Self { t: 0.0, q: none.clone(), v: none.clone(), p: none, inputs: Array::from_fn(|_| 0.0) }
+    }
+
     /// Time.
     pub const fn t(&self) -> f64 {
         self.t
@@ -78,3 +86,11 @@ impl<S: MechanicalSystem> PartialEq for State<S> {
             && self.inputs.as_ref() == other.inputs.as_ref()
     }
 }
+
+memory!([S: MechanicalSystem] State<S>, |words| Self { t, q, v, p, inputs } => {
+    words.number(t);
+    words.numbers(q);
+    words.numbers(v);
+    words.numbers(p);
+    words.numbers(inputs);
+});

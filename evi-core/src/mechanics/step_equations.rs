@@ -74,6 +74,27 @@ impl<S: MechanicalSystem, T: InterpolationTable, const K: usize> DiscreteLagrang
         action
     }
 
+    /// The rule that samples the Lagrangian.
+    pub(crate) const fn quadrature(&self) -> &Quadrature<K> {
+        &self.quadrature
+    }
+
+    /// Calls `see` for the numbers that tell this action from another of its type: those of the rule, and of the curves, which are affine in
+    /// the ends of a step.
+    pub(crate) fn for_each_number(&self, mut see: impl FnMut(f64)) {
+        for node in 0..K {
+            see(self.quadrature.offsets()[node]);
+            see(self.quadrature.weights()[node]);
+            for i in 0..S::N_COORDINATES {
+                for (q, d) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)] {
+                    let (x, rate) = self.table.evaluate(node, i, q, d);
+                    see(x);
+                    see(rate);
+                }
+            }
+        }
+    }
+
     /// `p⁻ = D₂L_d(q₀, q₀ + d) + f⁺ = Σⱼ wⱼ (h g₂ (∂L/∂q + f) + h g₂' ∂L/∂v)`.
     #[inline]
     pub(crate) fn arriving_momentum(

@@ -3,8 +3,10 @@
 //! In: a function that applies one correction and returns its relative length. Out: the number of corrections, or
 //! how it failed. The equations, their matrix and the scale of "relative" are the caller's.
 
+mod diagnostics;
 mod tally;
 
+pub use diagnostics::{Diagnostics, Worst};
 pub use tally::{Fallbacks, Statistics, Tally};
 
 /// Stop when the correction after this one would be below this fraction of the unknowns: a quarter of round-off.

@@ -1,7 +1,10 @@
 //! What happens inside steps, counted.
 
+use crate::linear::Conditioning;
+use crate::memory::memory;
+
 /// What is counted under the steps of a run. A step tells it what happens, as it happens; what a tally does not count costs
-/// nothing.
+/// nothing. Checkpoints are taken of runs whose tally is a [`Memory`](crate::memory::Memory), as all of this crate are.
 pub trait Tally {
     /// Newton's iteration of a step has converged with so many corrections.
     #[inline(always)]
@@ -26,6 +29,34 @@ pub trait Tally {
     /// A pivot of the scene's own elimination was round-off, and the pivoted dense solve has taken its place.
     #[inline(always)]
     fn count_fallback(&mut self) {}
+
+    /// A run begins a step; so many have been taken before.
+    #[inline(always)]
+    fn begin_step(&mut self, step: u64) {
+        let _ = step;
+    }
+
+    /// Equations of a step are solved with a matrix, whose `conditioning` is computed when it is called.
+    #[inline(always)]
+    fn see_matrix(&mut self, conditioning: impl FnOnce() -> Conditioning) {
+        let _ = conditioning;
+    }
+
+    /// Equations of a step are solved with a matrix of which no more is known than the ratio of its smallest pivot to its largest.
+    #[inline(always)]
+    fn see_pivot_ratio(&mut self, pivot_ratio: f64) {
+        let _ = pivot_ratio;
+    }
+
+    /// Newton's iteration begins, or begins anew.
+    #[inline(always)]
+    fn begin_iteration(&mut self) {}
+
+    /// Newton's iteration makes a correction of the relative `length` that is computed when it is called.
+    #[inline(always)]
+    fn see_correction(&mut self, length: impl FnOnce() -> f64) {
+        let _ = length;
+    }
 }
 
 /// Counts nothing.
@@ -87,3 +118,11 @@ impl Tally for Statistics {
         self.fallbacks += 1;
     }
 }
+
+memory!([] Fallbacks, |words| Self { fallbacks } => { words.count(fallbacks) });
+
+memory!([] Statistics, |words| Self { corrections, fallbacks, restarts, newton_steps, rescued_steps } => {
+    for count in [corrections, fallbacks, restarts, newton_steps, rescued_steps] {
+        words.count(count);
+    }
+});

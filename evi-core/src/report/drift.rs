@@ -15,16 +15,9 @@ pub struct Drift {
 impl Drift {
     /// The trend of `samples` through the means of `blocks` blocks of equal length; samples that do not fill a
     /// block are left out. `None` for fewer than eight blocks or fewer samples than blocks.
-    ///
-    /// The variance of the slope is the Newey-West estimate (Econometrica 55 (1987) 703) with the Bartlett kernel
-    /// over `4 (blocks/100)^{2/9}` lags: residuals of an oscillating energy are correlated between blocks, and an
-    /// interval for independent residuals would be too narrow or too wide.
     pub fn of(samples: &[f64], blocks: usize) -> Option<Self> {
-        const FEWEST_BLOCKS: usize = 8;
-        /// 97.5 % quantile of the normal distribution.
-        const QUANTILE: f64 = 1.96;
         let length = samples.len().checked_div(blocks)?;
-        if blocks < FEWEST_BLOCKS || length == 0 {
+        if length == 0 {
             return None;
         }
         let means: Vec<f64> = samples
@@ -32,6 +25,22 @@ impl Drift {
             .take(blocks)
             .map(|block| block.iter().sum::<f64>() / length as f64)
             .collect();
+        Self::of_block_means(&means, length as f64)
+    }
+
+    /// The trend through the means of consecutive blocks of `length` samples each. `None` for fewer than eight.
+    ///
+    /// The variance of the slope is the Newey-West estimate (Econometrica 55 (1987) 703) with the Bartlett kernel
+    /// over `4 (blocks/100)^{2/9}` lags: residuals of an oscillating energy are correlated between blocks, and an
+    /// interval for independent residuals would be too narrow or too wide.
+    pub fn of_block_means(means: &[f64], length: f64) -> Option<Self> {
+        const FEWEST_BLOCKS: usize = 8;
+        /// 97.5 % quantile of the normal distribution.
+        const QUANTILE: f64 = 1.96;
+        let blocks = means.len();
+        if blocks < FEWEST_BLOCKS {
+            return None;
+        }
         let centre = (blocks - 1) as f64 / 2.0;
         let average = means.iter().sum::<f64>() / blocks as f64;
         let abscissa = |block: usize| block as f64 - centre;
@@ -50,7 +59,7 @@ impl Drift {
             + 2.0
                 * (1..=lags).map(|lag| (1.0 - lag as f64 / (lags + 1) as f64) * covariance(lag)).sum::<f64>();
         let standard_error = variance.max(0.0).sqrt() / spread;
-        let per_sample = 1.0 / length as f64;
+        let per_sample = 1.0 / length;
         Some(Self { slope: slope * per_sample, half_width: QUANTILE * standard_error * per_sample })
     }
 

@@ -19,6 +19,7 @@ mod mollifier;
 #[cfg(feature = "std")]
 mod nodal;
 mod quadrature;
+mod resonance;
 mod scene_frequencies;
 
 pub use about::{About, AboutTable};
@@ -43,6 +44,8 @@ pub(crate) use nodal::LobattoNodes;
 #[cfg(feature = "std")]
 pub use nodal::{MOST_INTERVALS, NodalCurves, NodalTable, NodalTables};
 pub use quadrature::{Quadrature, QuadratureError};
+pub use resonance::Resonance;
+pub(crate) use resonance::to_multiple_of_pi;
 pub use scene_frequencies::{SceneFrequencies, SceneTable};
 
 /// A scheme that does not define a step.

@@ -7,6 +7,7 @@ use core::fmt;
 
 use super::{Compensable, CompensableStep, OneStep, Scheme, StepError, Symmetric, Tally};
 use crate::mechanics::{Dropped, GalerkinAction, Lost, LostDigits, Mechanics, RoundOff, State, Sum};
+use crate::memory::memory;
 use crate::scalar::InstructionSet;
 use crate::scheme::{Frequency, Linear, NodalCurves, SchemeError, checked_step_size};
 use crate::system::MechanicalSystem;
@@ -197,3 +198,14 @@ impl<S: MechanicalSystem, F: NodalCurves<S>, const K: usize> GalerkinStep<S, F, 
         Ok([lost_q, lost_p])
     }
 }
+
+memory!([S: MechanicalSystem, F: NodalCurves<S>, const K: usize] GalerkinStep<S, F, K>, |words|
+    Self { action, passes, newton } => {
+        action.for_each_number(|number| words.fixed(number));
+        words.fixed(if passes.is_some() { 1.0 } else { 0.0 });
+        if let Some(passes) = passes {
+            words.part(passes);
+        }
+        words.part(newton);
+    }
+);

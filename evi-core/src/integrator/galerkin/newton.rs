@@ -5,6 +5,7 @@ use crate::array::Array;
 use crate::integrator::{IterationFailure, StepError, Tally};
 use crate::linear::{InPlaceLu, constraint_index, largest_magnitude};
 use crate::mechanics::{GalerkinAction, Points, State, relative};
+use crate::memory::memory;
 use crate::newton::{self, Converged};
 use crate::scheme::NodalTables;
 use crate::system::MechanicalSystem;
@@ -54,6 +55,11 @@ impl<S: MechanicalSystem, const K: usize> NewtonSolve<S, K> {
         Ok(points)
     }
 }
+
+// Matrix and factors are written anew in every correction.
+memory!([S: MechanicalSystem, const K: usize] NewtonSolve<S, K>, |words|
+    Self { extrapolation: _, storage: _, past } => { words.optional(past, Points::none) }
+);
 
 /// The parabola with the acceleration and the multipliers of the state.
 fn parabola<S: MechanicalSystem, T: NodalTables<K>, const K: usize>(
@@ -166,6 +172,7 @@ impl NewtonStorage {
         let in_units = |x: &[f64]| length_in_units(x, scale.as_ref());
         let mut constraint_residual = 0.0;
         let mut smallest_pivot_ratio = 1.0_f64;
+        tally.begin_iteration();
         let iteration = newton::iterate(|correction| {
             constraint_residual = action.linearize(state, points, &mut self.residual, &mut self.entries);
             for (col, column) in self.entries.chunks_exact_mut(self.residual.len()).enumerate() {
@@ -182,6 +189,7 @@ impl NewtonStorage {
                 .factor(&mut self.entries)
                 .map_err(|matrix| IterationFailure::Singular { correction, matrix })?;
             smallest_pivot_ratio = smallest_pivot_ratio.min(self.factors.pivot_ratio());
+            tally.see_pivot_ratio(self.factors.pivot_ratio());
             apply_scale(&mut self.residual);
             self.factors.solve(&self.entries, &mut self.residual);
             apply_scale(&mut self.residual);
@@ -197,7 +205,9 @@ impl NewtonStorage {
                 length = largest_magnitude([length, in_units(&update[..n])]);
                 reach = reach.max(in_units(points.differences[a].as_ref()));
             }
-            Ok(relative(length, reach))
+            let length = relative(length, reach);
+            tally.see_correction(|| length);
+            Ok(length)
         });
         match iteration {
             Ok(Converged { corrections }) => {

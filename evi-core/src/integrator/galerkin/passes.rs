@@ -8,6 +8,7 @@ use crate::linear::{Factorization, SingularMatrix};
 use crate::mechanics::{
     FirstGuess, LaneEnd, LaneStep, Lost, Mechanics, Passes, ProjectionError, RoundOff, State, Sum,
 };
+use crate::memory::memory;
 use crate::scalar::{InstructionSet, Lanes};
 use crate::scheme::PAST;
 use crate::system::MechanicalSystem;
@@ -120,3 +121,13 @@ impl<S: MechanicalSystem, const K: usize> LanePasses<S, K> {
         Ok([lost_q, lost_p])
     }
 }
+
+// The storage of the passes is written anew in every step.
+memory!([S: MechanicalSystem, const K: usize] LanePasses<S, K>, |words|
+    Self { step: _, instructions: _, past, known, h: _ } => {
+        for accelerations in past {
+            words.lanes(accelerations);
+        }
+        words.index(known);
+    }
+);

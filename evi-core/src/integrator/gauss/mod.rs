@@ -7,6 +7,7 @@ use crate::array::Array;
 use crate::mechanics::{
     Dropped, GaussEnd, GaussGuess, GaussPasses, Lost, LostDigits, Mechanics, RoundOff, State, Sum,
 };
+use crate::memory::memory;
 use crate::scalar::{InstructionSet, Lanes};
 use crate::scheme::{PAST, SchemeError, checked_step_size};
 use crate::system::MechanicalSystem;
@@ -189,3 +190,14 @@ impl<S: MechanicalSystem, const K: usize> GaussStep<S, K> {
         Ok(end)
     }
 }
+
+// Newton's iteration begins from the state, and the storage of the passes is written anew in every step.
+memory!([S: MechanicalSystem, const K: usize] GaussStep<S, K>, |words|
+    Self { mechanics: _, passes, instructions: _, past, known, newton: _, h: _ } => {
+        words.fixed(if passes.is_some() { 1.0 } else { 0.0 });
+        for velocities in past {
+            words.lanes(velocities);
+        }
+        words.index(known);
+    }
+);

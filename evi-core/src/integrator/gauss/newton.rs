@@ -57,12 +57,14 @@ impl<S: MechanicalSystem, const K: usize> GaussNewton<S, K> {
         }
         let h = self.tables.weights.sum().abs();
         let mut smallest_pivot_ratio = 1.0_f64;
+        tally.begin_iteration();
         let iteration = newton::iterate(|correction| {
             self.linearize(mechanics, start);
             self.factors
                 .factor(&mut self.entries)
                 .map_err(|matrix| IterationFailure::Singular { correction, matrix })?;
             smallest_pivot_ratio = smallest_pivot_ratio.min(self.factors.pivot_ratio());
+            tally.see_pivot_ratio(self.factors.pivot_ratio());
             self.factors.solve(&self.entries, &mut self.residual);
             let (mut length, mut reach) = (0.0, in_units(start.q.as_ref()));
             for (velocities, update) in self.velocities.chunks_exact_mut(n).zip(self.residual.chunks_exact(n))
@@ -73,7 +75,9 @@ impl<S: MechanicalSystem, const K: usize> GaussNewton<S, K> {
                 length = largest_magnitude([length, h * in_units(update)]);
                 reach = largest_magnitude([reach, h * in_units(velocities)]);
             }
-            Ok(relative(length, reach))
+            let length = relative(length, reach);
+            tally.see_correction(|| length);
+            Ok(length)
         });
         match iteration {
             Ok(Converged { corrections }) => {

@@ -41,6 +41,9 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'_, S, F, R>
     ) -> Result<Landing<S, R::Sum>, StepError> {
         let impulse = Array::from_fn(|c| predicted[c] + correction.impulse[c]);
         let scale = self.scale(&q);
+        tally.begin_iteration();
+        tally.see_correction(|| relative_length::<S>(&first, &scale));
+        tally.see_correction(|| relative_length::<S>(&second, &scale));
         if is_round_off_next::<S>(&second, &first, &scale) {
             return self.landing(q, impulse, CHORDS, tally);
         }
@@ -58,6 +61,7 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'_, S, F, R>
     #[inline(never)]
     fn solve_anew(&self, tally: &mut impl Tally) -> Result<Landing<S, R::Sum>, StepError> {
         let none = S::PerConstraint::<f64>::from_fn(|_| 0.0);
+        tally.begin_iteration();
         self.iterate(0, none.clone(), self.end(&none), none, tally)
     }
 
@@ -102,7 +106,9 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'_, S, F, R>
             move_by::<S, _>(&mut q, &correction.moved);
             impulse = Array::from_fn(|c| impulse[c] + correction.impulse[c]);
             let is_last = is_round_off_next::<S>(&residual, &previous, &scale);
-            match progress.record(relative_length::<S>(&residual, &scale), is_last) {
+            let length = relative_length::<S>(&residual, &scale);
+            tally.see_correction(|| length);
+            match progress.record(length, is_last) {
                 Ok(true) => return self.landing(q, impulse, corrections + progress.corrections(), tally),
                 Ok(false) => previous = residual,
                 Err(failure) => {

@@ -1,6 +1,7 @@
 //! The impulses of the steps so far, and what they let expect.
 
 use crate::array::Array;
+use crate::memory::memory;
 use crate::system::MechanicalSystem;
 
 /// The impulses so far. They affect the number of corrections and the last bits of a state, nothing else: a prediction that misses is not
@@ -35,3 +36,8 @@ impl<S: MechanicalSystem> History<S> {
         self.previous = [impulse, first.clone(), second.clone()];
     }
 }
+
+memory!([S: MechanicalSystem] History<S>, |words| Self { predicted, previous } => {
+    words.numbers(predicted);
+    words.part(previous);
+});

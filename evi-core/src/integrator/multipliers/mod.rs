@@ -17,6 +17,7 @@ use self::span::{Span, move_by};
 use super::StepError;
 use crate::array::Array;
 use crate::mechanics::{KickDriftKick, Lost, Mechanics, RoundOff, State, Sum};
+use crate::memory::memory;
 use crate::newton::Tally;
 use crate::system::MechanicalSystem;
 
@@ -39,6 +40,11 @@ struct Landing<S: MechanicalSystem, Q> {
 impl<S: MechanicalSystem, F: KickDriftKick<S>> MultiplierStep<S, F> {
     pub(crate) fn new(free: F) -> Self {
         Self { free, history: History::none() }
+    }
+
+    /// The step without its constraint forces.
+    pub(crate) const fn free(&self) -> &F {
+        &self.free
     }
 
     /// Overwrites `state` with the state one step of size `h` later, and returns what its positions and momenta have lost.
@@ -126,3 +132,5 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'_, S, F, R>
         Ok([lost_q, lost_p])
     }
 }
+
+memory!([S: MechanicalSystem, F] MultiplierStep<S, F>, |words| Self { free: _, history } => { words.part(history) });
