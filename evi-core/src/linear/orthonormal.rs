@@ -58,9 +58,9 @@ pub(crate) fn span<V: Array<f64>>(
         let ahead = lengths.take_while(|length| *length < AS_LONG * AS_LONG * longest).count();
         // The others keep their order.
         let until = (k + ahead + 1).min(vectors.len());
-        vectors[k..until].rotate_right(1);
+        last_to_front(&mut vectors[k..until]);
         if let Some(passed) = order.get_mut(k..until) {
-            passed.rotate_right(1);
+            last_to_front(passed);
         }
         let left = extend(basis, k, &vectors[k]);
         for rest in vectors.iter_mut().skip(k + 1) {
@@ -70,6 +70,13 @@ pub(crate) fn span<V: Array<f64>>(
         smallest = if left >= smallest || smallest.is_nan() { smallest } else { left };
     }
     smallest
+}
+
+/// `rotate_right(1)`, in which the optimiser finds no path to a panic.
+fn last_to_front<X>(elements: &mut [X]) {
+    for i in (1..elements.len()).rev() {
+        elements.swap(i - 1, i);
+    }
 }
 
 /// Overwrites `basis[..rank]` with an orthonormal basis of the first `rank` vectors, in their order.

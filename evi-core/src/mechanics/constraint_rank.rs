@@ -34,6 +34,8 @@ pub struct ConstraintRank<S: MechanicalSystem> {
     rank: usize,
     /// Constraints, `rank` independent ones first.
     order: S::PerConstraint<usize>,
+    /// Whether the gradient of some constraint vanishes: it follows from nothing.
+    pub(crate) lacks_gradient: bool,
 }
 
 impl<S: MechanicalSystem> ConstraintRank<S> {
@@ -171,6 +173,7 @@ impl<S: MechanicalSystem> Mechanics<S> {
 
     #[inline(never)]
     fn rank_of(mut forces: S::PerConstraint<S::PerCoordinate<f64>>) -> ConstraintRank<S> {
+        let lacks_gradient = forces.as_ref().iter().any(|force| orthonormal::product(force, force) == 0.0);
         let mut values = S::PerConstraint::<f64>::from_fn(|_| 0.0);
         singular_values(forces.clone().as_mut(), values.as_mut());
         let least = tolerance::<S>(&values);
@@ -179,7 +182,7 @@ impl<S: MechanicalSystem> Mechanics<S> {
         let mut basis = S::PerConstraint::<S::PerCoordinate<f64>>::from_fn(|_| Array::from_fn(|_| 0.0));
         // Of full rank, the last one in this order is the most dependent.
         orthonormal::span(forces.as_mut(), rank, basis.as_mut(), order.as_mut());
-        ConstraintRank { singular_values: values, rank, order }
+        ConstraintRank { singular_values: values, rank, order, lacks_gradient }
     }
 
     /// The columns of `L⁻¹ Gᵀ`, scaled to length 1; with `diag √|Mᵢᵢ|` for `L` where `M` is not positive definite.
