@@ -123,8 +123,9 @@ fn inner_points() {
 #[test]
 fn steps_in_parts() {
     // From the horizontal so long that some have no solution as a whole.
-    let (past, counts) =
-        resumed(DOUBLE, Evi::simpson(0.1).frequency(2.4).rescued::<4>(), DOUBLE.horizontal());
+    let (system, scheme) =
+        (DoublePendulum::UNIT, Evi::simpson(0.1).frequency(9.81_f64.sqrt()).rescued::<6>());
+    let (past, counts) = resumed(system, scheme, system.horizontal());
     assert!(past == Remembered && counts.rescued_steps > 0, "{counts:?}");
 }
 
