@@ -1,6 +1,8 @@
 //! Orthonormal bases, by Gram and Schmidt's process, twice each ("twice is enough": Giraud, Langou, Rozložník, van den Eshof,
 //! Numer. Math. 101 (2005) 87), which makes them orthonormal to round-off however nearly dependent the vectors are.
 
+use core::{mem, slice};
+
 use crate::array::Array;
 use crate::scalar::Scalar;
 
@@ -51,20 +53,20 @@ pub(crate) fn span<V: Array<f64>>(
     order: &mut [usize],
 ) -> f64 {
     let mut smallest = f64::INFINITY;
-    for k in 0..rank.min(vectors.len()).min(basis.len()) {
-        let lengths = vectors.iter().skip(k).map(|rest| product(rest, rest));
+    for k in 0..rank {
+        let Some(rests) = vectors.get_mut(k..) else { break };
+        let lengths = rests.iter().map(|rest| product(rest, rest));
         let longest = lengths.clone().fold(0.0, |longest: f64, length| longest.max(length));
         // Of none, where none is a number: the first.
         let ahead = lengths.take_while(|length| *length < AS_LONG * AS_LONG * longest).count();
         // The others keep their order.
-        let until = (k + ahead + 1).min(vectors.len());
-        last_to_front(&mut vectors[k..until]);
-        if let Some(passed) = order.get_mut(k..until) {
-            last_to_front(passed);
-        }
-        let left = extend(basis, k, &vectors[k]);
-        for rest in vectors.iter_mut().skip(k + 1) {
-            remove(&basis[k..=k], rest);
+        last_to_front(rests.iter_mut().take(ahead + 1));
+        last_to_front(order.iter_mut().skip(k).take(ahead + 1));
+        let Some((chosen, others)) = rests.split_first_mut() else { break };
+        let left = extend(basis, k, chosen);
+        let Some(direction) = basis.get(k) else { break };
+        for rest in others {
+            remove(slice::from_ref(direction), rest);
         }
         // Written so that a NaN survives.
         smallest = if left >= smallest || smallest.is_nan() { smallest } else { left };
@@ -72,10 +74,12 @@ pub(crate) fn span<V: Array<f64>>(
     smallest
 }
 
-/// `rotate_right(1)`, in which the optimiser finds no path to a panic.
-fn last_to_front<X>(elements: &mut [X]) {
-    for i in (1..elements.len()).rev() {
-        elements.swap(i - 1, i);
+/// Moves the last element before the others.
+fn last_to_front<'a, X: 'a>(mut elements: impl Iterator<Item = &'a mut X>) {
+    if let Some(first) = elements.next() {
+        for element in elements {
+            mem::swap(first, element);
+        }
     }
 }
 
