@@ -42,11 +42,15 @@ fn constraints_and_angular_momentum() {
     let start = system.one_radian();
     let polynomial = Galerkin::<3>::new(0.05);
     let mixed = Galerkin::<2>::new(0.05).frequency(2.0);
-    for change in [
-        largest_change(system, polynomial, start, STEPS, |q, p| angular_momentum(q, p, 0)),
-        largest_change(system, mixed, start, STEPS, |q, p| angular_momentum(q, p, 0)),
+    let angular = |q: &[f64], p: &[f64]| angular_momentum(q, p, 0);
+    /// Known limitation: the rounding of the tables of passes is the same in every step, 1.0e-17 of each (docs/design/0007).
+    const OF_TABLES: f64 = 1e-17 * STEPS as f64;
+    for (change, bound) in [
+        (largest_change(system, polynomial, start, STEPS, angular), LONG_ROUND_OFF + OF_TABLES),
+        (largest_change(system, polynomial.by_newton(), start, STEPS, angular), LONG_ROUND_OFF),
+        (largest_change(system, mixed, start, STEPS, angular), LONG_ROUND_OFF),
     ] {
-        assert!(change <= LONG_ROUND_OFF, "angular momentum changes by {change:e}");
+        assert!(change <= bound, "angular momentum changes by {change:e}");
     }
     let (double, swing) = swing();
     for [constraint, hidden] in [
@@ -134,4 +138,6 @@ fn the_symplectic_form() {
     let angles = DoublePendulumInAngles::UNEQUAL;
     let moderate = DoublePendulumInAngles::MODERATE;
     check_symplectic::<_, _, 3, 4, 2>(angles, Galerkin::new(H), [0.0; 2], moderate);
+    let crank = SliderCrank::STANDARD;
+    check_symplectic::<_, _, 3, 4, 3>(crank, Galerkin::new(0.2 * H), [0.0; 3], crank.stretched_out(5.0));
 }

@@ -4,7 +4,9 @@ use evi_core::baseline::Rattle;
 use evi_core::generic::GenericSystem;
 use evi_core::prelude::*;
 use evi_core::scheme::NodalCurves;
-use evi_examples::{AndrewsSqueezer, CarAxis, DoublePendulum, DrivenPendulum, SphericalPendulum, Start};
+use evi_examples::{
+    AndrewsSqueezer, CarAxis, DoublePendulum, DrivenPendulum, SliderCrank, SphericalPendulum, Start,
+};
 use evi_tests::conservation::{angular_momentum, largest_change, largest_residuals, there_and_back};
 use evi_tests::convergence::check_orders;
 use evi_tests::galerkin::GalerkinAction;

@@ -4,12 +4,15 @@
 use evi_core::integrator::{Iteration, Statistics};
 use evi_core::prelude::*;
 use evi_examples::{
-    CarAxis, DoublePendulum, DrivenPendulum, FermiPastaUlam, Pendulum, SphericalPendulum, Start,
-    StiffSpringPendulum,
+    AndrewsSqueezer, CarAxis, DoublePendulum, DrivenPendulum, FermiPastaUlam, Pendulum, SliderCrank,
+    SphericalPendulum, Start, StiffSpringPendulum,
 };
 use evi_tests::conservation::{largest_residuals, there_and_back};
 use evi_tests::largest_difference;
-use evi_tests::scenes::{DampedOscillator, DoublePendulumInAngles, KapitzaPendulum, PushedDumbbell};
+use evi_tests::scenes::{
+    ChargedSphericalPendulum, DampedOscillator, DoublePendulumInAngles, KapitzaPendulum,
+    KapitzaPendulumInAngle, MotorisedDoublePendulum, PushedDumbbell, RelativisticBead,
+};
 
 /// Two coupled pendulums on carts that share inertia: a constant mass matrix that is full, and two constraints.
 #[derive(Clone, Copy, MechanicalSystem)]
@@ -151,6 +154,32 @@ mod agreement {
     }
 
     #[test]
+    fn mass_that_depends_on_the_configuration() {
+        let (angles, moderate) = (DoublePendulumInAngles::UNEQUAL, DoublePendulumInAngles::MODERATE);
+        check::<_, 1, 2>(angles, moderate, 0.02);
+        check::<_, 8, 2>(angles, moderate, 0.05);
+        check::<_, 3, 2>(MotorisedDoublePendulum::STANDARD, moderate, 0.02);
+        let moving = KapitzaPendulumInAngle::of(KapitzaPendulum::STANDARD);
+        check::<_, 5, 1>(moving, Start { q: [3.0], v: [0.2] }, 0.002);
+    }
+
+    #[test]
+    fn mass_that_depends_on_the_configuration_with_constraints() {
+        let crank = SliderCrank::STANDARD;
+        check::<_, 4, 3>(crank, crank.stretched_out(15.0), 0.01);
+        check::<_, 7, 3>(crank, crank.stretched_out(15.0), 0.03);
+        let squeezer = AndrewsSqueezer::STANDARD;
+        check::<_, 8, 7>(squeezer, squeezer.standard_start(), 6e-4);
+    }
+
+    #[test]
+    fn gyroscopic_coupling_and_what_is_not_quadratic_in_the_velocity() {
+        let charged = ChargedSphericalPendulum::STANDARD;
+        check::<_, 8, 3>(charged, charged.one_radian(), 0.05);
+        check::<_, 4, 2>(RelativisticBead::STANDARD, RelativisticBead::at_angle(1.0, -2.0), 0.02);
+    }
+
+    #[test]
     fn forces_with_velocities_and_time() {
         let driven = DrivenPendulum::STANDARD;
         check::<_, 8, 2>(driven, driven.horizontal(), 0.05);
@@ -181,6 +210,10 @@ mod kept {
         check_returns::<_, 8, 4>(SHARED, SHARED_START, 0.02);
         let spherical = SphericalPendulum::UNIT;
         check_returns::<_, 8, 3>(spherical, spherical.one_radian(), 0.05);
+        let (angles, moderate) = (DoublePendulumInAngles::UNEQUAL, DoublePendulumInAngles::MODERATE);
+        check_returns::<_, 8, 2>(angles, moderate, 0.05);
+        let crank = SliderCrank::STANDARD;
+        check_returns::<_, 4, 3>(crank, crank.stretched_out(5.0), 0.01);
     }
 
     #[test]

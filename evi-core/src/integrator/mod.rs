@@ -18,6 +18,8 @@ mod matrix_evi;
 mod multipliers;
 mod of_rank;
 mod positions;
+#[cfg(feature = "std")]
+mod proposal;
 mod rank_check;
 mod rescue;
 mod run;
@@ -41,6 +43,8 @@ pub use matrix_evi::{
     LinearisedAlong, LinearisedAt, MatrixEvi, MatrixEviStep, QuadraticModel, StepMode, Stiffness,
 };
 pub use of_rank::OfRank;
+#[cfg(feature = "std")]
+pub use proposal::{LONGEST_TRIAL, Member, PASSES_OF_NEWTON, Proposal, ProposalError, propose};
 pub use rescue::{Rescued, RescuedStep, Rescues};
 pub use run::Run;
 #[cfg(feature = "generic")]

@@ -6,18 +6,30 @@ use super::{SingularMatrix, checked_pivot_ratio};
 
 /// `P A = L U` by columns (Golub & Van Loan, Matrix Computations, 4th ed., alg. 3.4.1); what belongs to the factors beside their
 /// entries.
+///
+/// Beyond the last nonzero of a row or a column nothing is computed: the cost of a band is proportional to its length (ibid., sec. 4.3).
 pub(crate) struct InPlaceLu {
     /// Row that was swapped with row `k` before column `k` was eliminated.
     swaps: Vec<usize>,
     /// `1/Uₖₖ`: one division per column.
     inverse_pivots: Vec<f64>,
+    /// Behind the last nonzero of every column of `L`.
+    column_ends: Vec<usize>,
+    /// Behind the last nonzero of every row that is left.
+    row_ends: Vec<usize>,
     pivot_ratio: f64,
 }
 
 impl InPlaceLu {
     /// For matrices of `dimension` rows.
     pub(crate) fn new(dimension: usize) -> Self {
-        Self { swaps: vec![0; dimension], inverse_pivots: vec![1.0; dimension], pivot_ratio: 1.0 }
+        Self {
+            swaps: vec![0; dimension],
+            inverse_pivots: vec![1.0; dimension],
+            column_ends: vec![0; dimension],
+            row_ends: vec![0; dimension],
+            pivot_ratio: 1.0,
+        }
     }
 
     /// Overwrites the matrix with its factors.
@@ -26,32 +38,45 @@ impl InPlaceLu {
     /// [`SingularMatrix`] when the smallest pivot is lost in the round-off of the largest.
     pub(crate) fn factor(&mut self, entries: &mut [f64]) -> Result<(), SingularMatrix> {
         let dimension = self.swaps.len();
+        for (col, column) in entries.chunks_exact(dimension.max(1)).enumerate() {
+            for (end, &entry) in self.row_ends.iter_mut().zip(column) {
+                if entry != 0.0 {
+                    *end = col + 1;
+                }
+            }
+        }
         for k in 0..dimension {
-            let (pivot_row, pivot) = largest_entry(&entries[k * dimension..(k + 1) * dimension], k);
+            let column = &entries[k * dimension..(k + 1) * dimension];
+            let end =
+                column.iter().rposition(|&entry| entry != 0.0).map_or(k + 1, |row| (row + 1).max(k + 1));
+            let (pivot_row, pivot) = largest_entry(&column[..end], k);
             self.swaps[k] = pivot_row;
+            self.column_ends[k] = end;
             // Exact zero: nothing is left to eliminate in this column; the check of the pivots reports it.
             if pivot == 0.0 {
                 continue;
             }
+            let row_end = self.row_ends[k..end].iter().fold(k + 1, |end, &other| end.max(other));
             if pivot_row != k {
-                for col in 0..dimension {
+                for col in k..row_end {
                     entries.swap(col * dimension + k, col * dimension + pivot_row);
                 }
             }
+            self.row_ends[k..end].fill(row_end);
             let inverse_pivot = 1.0 / pivot;
             self.inverse_pivots[k] = inverse_pivot;
             let (head, tail) = entries.split_at_mut((k + 1) * dimension);
-            let multipliers = &mut head[k * dimension + k + 1..];
+            let multipliers = &mut head[k * dimension + k + 1..k * dimension + end];
             for multiplier in multipliers.iter_mut() {
                 *multiplier *= inverse_pivot;
             }
-            for column in tail.chunks_exact_mut(dimension) {
+            for column in tail.chunks_exact_mut(dimension).take(row_end - (k + 1)) {
                 let top = column[k];
                 // Where the matrix has blocks of zeros, half of the columns.
                 if top == 0.0 {
                     continue;
                 }
-                for (entry, multiplier) in column[k + 1..].iter_mut().zip(multipliers.iter()) {
+                for (entry, multiplier) in column[k + 1..end].iter_mut().zip(multipliers.iter()) {
                     *entry -= multiplier * top;
                 }
             }
@@ -63,13 +88,12 @@ impl InPlaceLu {
     /// Overwrites the right-hand side with the solution; `entries` are the factors.
     pub(crate) fn solve(&self, entries: &[f64], rhs: &mut [f64]) {
         let dimension = self.swaps.len();
-        // The multipliers of a column are swapped with the rows below it: all swaps come before the substitution.
+        // The multipliers of a column stand in the rows of its own time: a swap comes right before their substitution.
         for (k, &pivot_row) in self.swaps.iter().enumerate() {
             rhs.swap(k, pivot_row);
-        }
-        for k in 0..dimension {
             let value = rhs[k];
-            for (entry, multiplier) in rhs[k + 1..].iter_mut().zip(&entries[k * dimension + k + 1..]) {
+            let multipliers = &entries[k * dimension + k + 1..k * dimension + self.column_ends[k]];
+            for (entry, multiplier) in rhs[k + 1..].iter_mut().zip(multipliers) {
                 *entry -= multiplier * value;
             }
         }

@@ -13,6 +13,8 @@ mod kkt;
 #[cfg(feature = "std")]
 mod lane_ldl;
 mod null_space;
+#[cfg(feature = "std")]
+mod ordering;
 pub(crate) mod orthonormal;
 mod pivoted;
 mod singular_values;
@@ -28,6 +30,8 @@ pub(crate) use kkt::{FactoredKkt, Kkt, constraint_index, reciprocal_power_of_two
 #[cfg(feature = "std")]
 pub(crate) use lane_ldl::{LaneGram, LaneMass};
 pub use null_space::NullSpace;
+#[cfg(feature = "std")]
+pub(crate) use ordering::band_places;
 #[cfg(feature = "std")]
 pub(crate) use pivoted::checked_pivot_ratio;
 pub use pivoted::{DenseLu, Pivoted};

@@ -168,7 +168,8 @@ impl<S: MechanicalSystem> Mechanics<S> {
             Array::from_fn(|c| Array::from_fn(|col| columns[col][c]))
         };
         for row in 0..S::N_COORDINATES {
-            for col in (0..=row).filter(|&col| S::STRUCTURE.constraints_curve(row, col)) {
+            let curves = curved_with::<S>(row);
+            for col in (0..=row).filter(|&col| curves[col]) {
                 // γ is a quadratic polynomial of the velocity: γ(a + b) − γ(a) − γ(b) + γ(0) leaves twice its
                 // bilinear form, without the terms of time. Constraint by constraint, so that small whole numbers
                 // cancel exactly.
@@ -182,4 +183,16 @@ impl<S: MechanicalSystem> Mechanics<S> {
             }
         }
     }
+}
+
+/// The coordinates with which some constraint can have a second derivative by `coordinate`, too: both stand in it, and its gradient varies with both.
+fn curved_with<S: MechanicalSystem>(coordinate: usize) -> S::PerCoordinate<bool> {
+    let varying = || S::STRUCTURE.jacobian.q.iter().filter(|entry| entry.is_varying());
+    let mut curves = S::PerCoordinate::<bool>::filled(false);
+    for entry in varying().filter(|entry| entry.col == coordinate) {
+        for other in varying().filter(|other| other.row == entry.row) {
+            curves[other.col] = true;
+        }
+    }
+    curves
 }

@@ -21,7 +21,7 @@
 
 use super::{ForceDerivatives, ForcePoint, Mechanics, State};
 use crate::array::Array;
-use crate::linear::{constraint_index, largest_magnitude};
+use crate::linear::{band_places, constraint_index, largest_magnitude};
 use crate::memory::memory;
 use crate::scheme::{LobattoNodes, NodalTables};
 use crate::system::MechanicalSystem;
@@ -32,6 +32,9 @@ pub(crate) struct GalerkinAction<S: MechanicalSystem, T, const K: usize> {
     pub(crate) nodes: LobattoNodes<K>,
     tables: T,
     h: f64,
+    /// Where every row of a block stands: all nodes of a coordinate or a constraint together, coordinates and constraints that share an equation
+    /// near each other.
+    places: Vec<usize>,
 }
 
 /// The unknowns of a step.
@@ -67,21 +70,30 @@ memory!([S: MechanicalSystem, const K: usize] Points<S, K>, |words| Self { diffe
 /// Where entries of the Newton matrix go: block `(a, b)` couples row `a` of the equations with point `b + 1` and impulse `b`.
 pub(crate) struct Blocks<'a> {
     entries: &'a mut [f64],
-    /// Rows of a block: coordinates, then constraints.
-    block: usize,
-    dimension: usize,
+    /// Of the rows of a block: coordinates, then constraints.
+    places: &'a [usize],
+    intervals: usize,
 }
 
 impl Blocks<'_> {
     #[inline]
     fn add(&mut self, (a, row): (usize, usize), (b, col): (usize, usize), value: f64) {
-        self.entries[(b * self.block + col) * self.dimension + a * self.block + row] += value;
+        let dimension = self.places.len() * self.intervals;
+        let (row, col) = (self.places[row] * self.intervals + a, self.places[col] * self.intervals + b);
+        self.entries[col * dimension + row] += value;
     }
 }
 
+/// The place of every coordinate and constraint in the matrix.
+fn places<S: MechanicalSystem>() -> Vec<usize> {
+    let (hessian, jacobian, forces) = (S::STRUCTURE.hessian, S::STRUCTURE.jacobian.q, S::STRUCTURE.forces);
+    let of_coordinates = [hessian.qq, hessian.vq, hessian.vv, forces.q, forces.v].into_iter().flatten();
+    let of_coordinates = of_coordinates.map(|entry| (entry.row, entry.col));
+    let of_constraints = jacobian.iter().map(|entry| (constraint_index::<S>(entry.row), entry.col));
+    band_places(S::N_COORDINATES + S::N_CONSTRAINTS, of_coordinates.chain(of_constraints))
+}
+
 impl<S: MechanicalSystem, T: NodalTables<K>, const K: usize> GalerkinAction<S, T, K> {
-    /// Number of unknowns, `K (n + m)`.
-    pub(crate) const DIMENSION: usize = K * (S::N_COORDINATES + S::N_CONSTRAINTS);
     /// Whether some constraint has a second derivative.
     const CONSTRAINTS_CURVE: bool = {
         let mut curve = false;
@@ -94,7 +106,13 @@ impl<S: MechanicalSystem, T: NodalTables<K>, const K: usize> GalerkinAction<S, T
     };
 
     pub(crate) fn new(mechanics: Mechanics<S>, tables: T, h: f64) -> Self {
-        Self { mechanics, nodes: LobattoNodes::new(), tables, h }
+        Self { mechanics, nodes: LobattoNodes::new(), tables, h, places: places::<S>() }
+    }
+
+    /// The place in the matrix of a row of a node.
+    #[inline]
+    pub(crate) fn place(&self, node: usize, row: usize) -> usize {
+        self.places[row] * K + node
     }
 
     /// Calls `see` for the numbers that tell this action from another of its type: those of the curves.
@@ -158,8 +176,8 @@ impl<S: MechanicalSystem, T: NodalTables<K>, const K: usize> GalerkinAction<S, T
         self.nodes.weights[node] * self.tables.table(i).rates(node).per_point(a)
     }
 
-    /// Overwrites `residual` with the left sides of the equations and `entries` (by columns) with their derivative; returns the largest
-    /// residual of a constraint.
+    /// Overwrites `residual` with the left sides of the equations, node by node, and `entries` (by columns, in the order of
+    /// [`place`](Self::place)) with their derivative; returns the largest residual of a constraint.
     pub(crate) fn linearize(
         &self,
         start: &State<S>,
@@ -172,7 +190,7 @@ impl<S: MechanicalSystem, T: NodalTables<K>, const K: usize> GalerkinAction<S, T
         let constants = &self.mechanics.constants;
         residual.fill(0.0);
         entries.fill(0.0);
-        let mut matrix = Blocks { entries, block, dimension: Self::DIMENSION };
+        let mut matrix = Blocks { entries, places: &self.places, intervals: K };
         for i in 0..n {
             residual[i] -= h * start.p[i];
         }

@@ -129,7 +129,7 @@ impl<S: MechanicalSystem, const K: usize> GaussPasses<S, K> {
             passes += 1;
             let moved = h * Scalar::sqrt(moves.largest());
             let reach = reach(Scalar::sqrt(here.largest()), h * Scalar::sqrt(speed.largest()));
-            if progress.has_converged(if moved == 0.0 { 0.0 } else { moved / reach })? {
+            if progress.has_converged_linearly(if moved == 0.0 { 0.0 } else { moved / reach })? {
                 break;
             }
         }

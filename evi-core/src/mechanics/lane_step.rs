@@ -189,7 +189,7 @@ impl<S: MechanicalSystem, const K: usize> LaneStep<S, K> {
             let length = Scalar::sqrt(squares.largest().abs()) * per_reach;
             is_stale = length > STALE;
             // In the first pass nothing has moved yet.
-            if (passes == 1 && Self::FORCE_VARIES) || !progress.has_converged(length)? {
+            if (passes == 1 && Self::FORCE_VARIES) || !progress.has_converged_linearly(length)? {
                 continue;
             }
             let mut difference: S::PerCoordinate<f64> = Array::filled(0.0);
@@ -394,7 +394,7 @@ impl<S: MechanicalSystem, const K: usize> LaneStep<S, K> {
 
 /// Zeros; written as a copy, since what builds an array from a function is not always inlined.
 #[inline(always)]
-fn nothing<A: Array<Lanes>>() -> A {
+pub(super) fn nothing<A: Array<Lanes>>() -> A {
     A::filled(Lanes::ZERO)
 }
 
@@ -418,7 +418,7 @@ pub(super) fn product<const K: usize, const FUSED: bool>(columns: &Columns, x: L
 
 /// `q₀ + d`.
 #[inline(always)]
-fn from_start<S: MechanicalSystem>(start: &State<S>, differences: &Nodes<S>) -> Nodes<S> {
+pub(super) fn from_start<S: MechanicalSystem>(start: &State<S>, differences: &Nodes<S>) -> Nodes<S> {
     let mut positions: Nodes<S> = nothing();
     for i in 0..S::N_COORDINATES {
         positions[i] = Lanes::splat(start.q[i]) + differences[i];

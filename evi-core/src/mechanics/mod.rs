@@ -27,6 +27,10 @@ mod matrix_action;
 mod modes;
 mod momentum;
 mod observables;
+#[cfg(feature = "std")]
+mod point_guess;
+#[cfg(feature = "std")]
+mod point_passes;
 mod quadratic_part;
 mod round_off;
 mod separable_action;
@@ -57,6 +61,10 @@ pub(crate) use modes::Modes;
 pub(crate) use momentum::relative;
 pub use momentum::{Acceleration, ProjectionError};
 pub(crate) use observables::norm;
+#[cfg(feature = "std")]
+pub(crate) use point_guess::{NodeMotion, PointGuess};
+#[cfg(feature = "std")]
+pub(crate) use point_passes::{PointEnd, PointIteration, PointPasses};
 pub use quadratic_part::QuadraticPart;
 pub(crate) use quadratic_part::StepModes;
 pub use round_off::LostDigits;

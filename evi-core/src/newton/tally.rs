@@ -12,7 +12,7 @@ pub trait Tally {
         let _ = corrections;
     }
 
-    /// The passes of a Galerkin step have not converged from the accelerations of the last steps, and begin again without them.
+    /// The passes of a Galerkin or Gauss step have not converged from the last steps, and begin again from the state alone.
     #[inline(always)]
     fn count_restart(&mut self) {}
 

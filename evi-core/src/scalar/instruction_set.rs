@@ -32,6 +32,18 @@ pub(crate) trait LaneOperation {
     fn run<const FUSED: bool>(self) -> Self::Output;
 }
 
+/// A function, as work on lanes.
+pub(super) struct Apart<F>(pub(super) F);
+
+impl<R, F: FnOnce() -> R> LaneOperation for Apart<F> {
+    type Output = R;
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) -> R {
+        (self.0)()
+    }
+}
+
 /// An operation on a machine with fused products.
 #[cfg(all(feature = "dispatch", target_arch = "x86_64"))]
 struct Fused<O>(O);

@@ -147,6 +147,11 @@ macro_rules! elementary {
             fn from_f64(value: f64) -> Self {
                 Self::splat(value)
             }
+            #[cfg(feature = "std")]
+            #[inline(always)]
+            fn compiled_apart<R>(kernel: impl FnOnce() -> R) -> R {
+                super::InstructionSet::detect().run(super::instruction_set::Apart(kernel))
+            }
             #[inline(always)]
             fn powi(self, exponent: i32) -> Self {
                 self.map(|x| Scalar::powi(x, exponent))

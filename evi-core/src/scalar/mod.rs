@@ -40,6 +40,13 @@ pub trait Scalar:
         (self.sin(), self.cos())
     }
 
+    /// Evaluates a kernel that is too large to be inlined wherever it is called. Vector lanes compile it in a function of its own for every set of
+    /// instructions that [`InstructionSet`] may find.
+    #[inline(always)]
+    fn compiled_apart<R>(kernel: impl FnOnce() -> R) -> R {
+        kernel()
+    }
+
     /// `self` to the power `exponent`; NaN for a negative base.
     fn powf(self, exponent: Self) -> Self;
     /// Square root.

@@ -19,10 +19,12 @@ use crate::scalar::{LANES, Lanes};
 /// Steps back from which the accelerations of the next one are predicted.
 pub(crate) const PAST: usize = 2;
 
-/// Width of the kernel of the prediction in steps, and what damps it: 0.4 to 0.8 and 1e-10 to 1e-14 differ by half a pass of eight; narrower kernels
-/// predict worse, less damped ones amplify the round-off of the past (double pendulum from the horizontal, K = 8, h = 0.067).
+/// Width of the kernel of the prediction in steps, what damps it, and the degree up to which it is exact: widths of 0.5 to 1, dampings of 1e-10 to
+/// 1e-14 and degrees of 4 to 6 differ by half a pass of seven (double pendulum from the horizontal and chain of 20, K = 8). Narrower kernels predict
+/// worse, less damped ones amplify the round-off of the past, and higher degrees lose long steps.
 const PREDICTION_WIDTH: f64 = 0.7;
 const PREDICTION_DAMPING: f64 = 1e-12;
+const LARGEST_TREND: usize = 5;
 
 /// A matrix by columns: rows are lanes.
 pub(crate) type Columns = [Lanes; LANES];
@@ -95,12 +97,12 @@ impl LaneTables {
 }
 
 /// The node whose acceleration a lane holds.
-const fn accelerated<const K: usize>(lane: usize) -> usize {
+pub(super) const fn accelerated<const K: usize>(lane: usize) -> usize {
     if lane + 1 < K { lane + 1 } else { 0 }
 }
 
 /// `Aᵢⱼ = ∫₀^cᵢ ℓⱼ(τ) dτ`, by a Gauss rule that is exact for `ℓⱼ`.
-fn integrals<const K: usize>(lobatto: &LobattoNodes<K>) -> [[f64; LANES + 1]; LANES + 1] {
+pub(super) fn integrals<const K: usize>(lobatto: &LobattoNodes<K>) -> [[f64; LANES + 1]; LANES + 1] {
     let gauss = Quadrature::<5>::gauss();
     core::array::from_fn(|i| {
         core::array::from_fn(|j| {
@@ -114,22 +116,45 @@ fn integrals<const K: usize>(lobatto: &LobattoNodes<K>) -> [[f64; LANES + 1]; LA
     })
 }
 
-/// `E = K(new, old) (K(old, old) + δ I)⁻¹` with the Gaussian kernel `K`.
+/// What a step continues from the two before: weights of the old values for which polynomials of the degree of [`trend`] are exact, and what is
+/// left of others is damped by a Gaussian kernel `G` (universal kriging: Cressie, Statistics for Spatial Data (1993), sec. 3.4),
+///
+/// ```text
+/// [G(old, old) + δ I   P] [E]   [G(old, new)]
+/// [Pᵀ                  0] [μ] = [P(new)ᵀ    ]
+/// ```
 pub(super) fn prediction<const K: usize>(node: impl Fn(usize) -> f64) -> [Columns; PAST] {
-    const MOST: usize = PAST * LANES;
-    let old: [f64; MOST] =
-        core::array::from_fn(|j| if j < PAST * K { node(j % K) - 1.0 - (j / K) as f64 } else { 0.0 });
+    const OLD: usize = PAST * LANES;
+    const MOST: usize = OLD + LARGEST_TREND + 1;
+    let n_old = PAST * K;
+    let n = n_old + trend(K) + 1;
+    let old: [f64; OLD] =
+        core::array::from_fn(|j| if j < n_old { node(j % K) - 1.0 - (j / K) as f64 } else { 0.0 });
     let kernel = |x: f64, y: f64| {
         let distance = (x - y) / PREDICTION_WIDTH;
         (-0.5 * distance * distance).exp()
     };
-    let between_old: [[f64; MOST]; MOST] = core::array::from_fn(|i| {
-        core::array::from_fn(|j| kernel(old[i], old[j]) + if i == j { PREDICTION_DAMPING } else { 0.0 })
+    // About the middle of all values, old and new.
+    let power = |x: f64, degree: usize| crate::scalar::Scalar::powi(x + 0.5, degree as i32);
+    let matrix: [[f64; MOST]; MOST] = core::array::from_fn(|i| {
+        core::array::from_fn(|j| match (i < n_old, j < n_old) {
+            (true, true) => kernel(old[i], old[j]) + if i == j { PREDICTION_DAMPING } else { 0.0 },
+            (true, false) => power(old[i], j - n_old),
+            (false, true) => power(old[j], i - n_old),
+            (false, false) => 0.0,
+        })
     });
     let weights: [[f64; MOST]; K] = core::array::from_fn(|i| {
-        solved(PAST * K, between_old, core::array::from_fn(|j| kernel(node(i), old[j])))
+        let rhs = |j| if j < n_old { kernel(node(i), old[j]) } else { power(node(i), j - n_old) };
+        solved(n, matrix, core::array::from_fn(rhs))
     });
     core::array::from_fn(|past| columns::<K>(|row, col| weights[row][past * K + col]))
+}
+
+/// The degree of the polynomials that a prediction from steps of `K` intervals is exact for.
+const fn trend(intervals: usize) -> usize {
+    let half = intervals / 2 + 1;
+    if half < LARGEST_TREND { half } else { LARGEST_TREND }
 }
 
 /// The inverse of a matrix of `K` rows and columns.

@@ -18,6 +18,8 @@ mod mode;
 mod mollifier;
 #[cfg(feature = "std")]
 mod nodal;
+#[cfg(feature = "std")]
+mod point_tables;
 mod quadrature;
 mod resonance;
 mod scene_frequencies;
@@ -43,6 +45,8 @@ pub use mollifier::Mollifier;
 pub(crate) use nodal::LobattoNodes;
 #[cfg(feature = "std")]
 pub use nodal::{MOST_INTERVALS, NodalCurves, NodalTable, NodalTables};
+#[cfg(feature = "std")]
+pub(crate) use point_tables::PointTables;
 pub use quadrature::{Quadrature, QuadratureError};
 pub use resonance::Resonance;
 pub(crate) use resonance::to_multiple_of_pi;

@@ -69,7 +69,7 @@ impl<const S: usize> NodalTable<S> {
         }
     }
 
-    fn polynomial() -> Self {
+    pub(crate) fn polynomial() -> Self {
         let nodes = LobattoNodes::<S>::new();
         Self::from_matrix(&nodes.differentiation(), |_| 0.0)
     }

@@ -259,26 +259,6 @@ impl Structure {
             || has_column(self.forces.q, coordinate))
     }
 
-    /// Whether some constraint can have a second derivative with respect to coordinates `i` and `j`: both stand in it, and its gradient
-    /// varies with both.
-    pub const fn constraints_curve(&self, i: usize, j: usize) -> bool {
-        let entries = self.jacobian.q;
-        let mut k = 0;
-        while k < entries.len() {
-            let mut l = 0;
-            while l < entries.len() {
-                let (first, second) = (&entries[k], &entries[l]);
-                let in_one = first.row == second.row && first.col == i && second.col == j;
-                if in_one && first.is_varying() && second.is_varying() {
-                    return true;
-                }
-                l += 1;
-            }
-            k += 1;
-        }
-        false
-    }
-
     /// Whether every constraint is a polynomial of degree at most two in `q`, and does not depend on time.
     pub const fn has_quadratic_constraints(&self) -> bool {
         let mut row = 0;

@@ -4,7 +4,7 @@
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 
-use super::implementation::{Kernels, dependence, entries, inlining, operations};
+use super::implementation::{Kernels, compiled, dependence, entries, operations};
 use crate::model::Model;
 use crate::schedule::{ForcePrograms, Program, Programs};
 use crate::structure::Structure;
@@ -66,13 +66,9 @@ impl Kernels<'_> {
     pub(super) fn forces(&self, ForcePrograms { values, derivatives }: &ForcePrograms) -> TokenStream {
         let writer = self.writer_with_inputs();
         let (statements, outputs) = writer.body(values);
-        let (of_values, of_derivatives) = (inlining(values), quote!(#[inline]));
-        let values = self.function_with_inputs(
-            "forces",
-            of_values,
-            quote!(Self::PerCoordinate<T>),
-            quote!(#statements [#(#outputs),*]),
-        );
+        let (of_values, body) = compiled(values, quote!(#statements [#(#outputs),*]));
+        let of_derivatives = quote!(#[inline]);
+        let values = self.function_with_inputs("forces", of_values, quote!(Self::PerCoordinate<T>), body);
         let (statements, outputs) = writer.body(derivatives);
         let (forces, entries) = outputs.split_at(self.model.coordinates.len());
         let derivatives = self.function_with_inputs(

@@ -274,12 +274,16 @@ pub(super) struct Kernels<'a> {
     slots: &'a ConstantSlots,
 }
 
-/// How a kernel asks to be inlined: always if it is small, since code over vector lanes gets the instructions of the function that it is
-/// inlined into, and counts eight times where the compiler decides.
-pub(super) fn inlining(program: &Program) -> TokenStream {
+/// How a kernel asks to be inlined, and its body. A small one is inlined always, since code over vector lanes gets the instructions of the function
+/// that it is inlined into, and counts eight times where the compiler decides; a large one over lanes is compiled in functions of its own.
+pub(super) fn compiled(program: &Program, body: TokenStream) -> (TokenStream, TokenStream) {
     /// What the compiler inlines of code over `f64` by itself.
     const MOST_OPERATIONS: usize = 120;
-    if program.operations.total() <= MOST_OPERATIONS { quote!(#[inline(always)]) } else { quote!(#[inline]) }
+    if program.operations.total() <= MOST_OPERATIONS {
+        (quote!(#[inline(always)]), body)
+    } else {
+        (quote!(#[inline]), quote!(T::compiled_apart(#[inline(always)] || { #body })))
+    }
 }
 
 impl Kernels<'_> {
@@ -311,7 +315,8 @@ impl Kernels<'_> {
         let (statements, outputs) = self.writer(true).body(program);
         let gradient = self.gradient(&outputs);
         let returned = quote!(::evi_core::__private::LagrangianGradient<Self, T>);
-        self.function("lagrangian_gradient", inlining(program), true, returned, quote!(#statements #gradient))
+        let (inlining, body) = compiled(program, quote!(#statements #gradient));
+        self.function("lagrangian_gradient", inlining, true, returned, body)
     }
 
     fn lagrangian_derivatives(&self, program: &Program) -> TokenStream {
@@ -319,32 +324,23 @@ impl Kernels<'_> {
         let (gradient, entries) = outputs.split_at(2 * self.model.coordinates.len());
         let gradient = self.gradient(gradient);
         let returned = quote!((::evi_core::__private::LagrangianGradient<Self, T>, Self::PerHessianEntry<T>));
-        self.function(
-            "lagrangian_derivatives",
-            inlining(program),
-            true,
-            returned,
-            quote!(#statements (#gradient, [#(#entries),*])),
-        )
+        let (inlining, body) = compiled(program, quote!(#statements (#gradient, [#(#entries),*])));
+        self.function("lagrangian_derivatives", inlining, true, returned, body)
     }
 
     fn constraints(&self, program: &Program) -> TokenStream {
         let (statements, outputs) = self.writer(false).body(program);
         let returned = quote!(Self::PerConstraint<T>);
-        self.function("constraints", inlining(program), false, returned, quote!(#statements [#(#outputs),*]))
+        let (inlining, body) = compiled(program, quote!(#statements [#(#outputs),*]));
+        self.function("constraints", inlining, false, returned, body)
     }
 
     fn constraint_derivatives(&self, program: &Program) -> TokenStream {
         let (statements, outputs) = self.writer(false).body(program);
         let (residuals, entries) = outputs.split_at(self.model.constraints.len());
         let returned = quote!((Self::PerConstraint<T>, Self::PerJacobianEntry<T>));
-        self.function(
-            "constraint_derivatives",
-            inlining(program),
-            false,
-            returned,
-            quote!(#statements ([#(#residuals),*], [#(#entries),*])),
-        )
+        let (inlining, body) = compiled(program, quote!(#statements ([#(#residuals),*], [#(#entries),*])));
+        self.function("constraint_derivatives", inlining, false, returned, body)
     }
 
     fn constraint_curvature(&self, program: &Program) -> TokenStream {

@@ -2,6 +2,7 @@
 
 mod newton;
 mod passes;
+mod points;
 
 use core::fmt;
 
@@ -13,6 +14,7 @@ use crate::scheme::{Frequency, Linear, NodalCurves, SchemeError, checked_step_si
 use crate::system::MechanicalSystem;
 use newton::NewtonSolve;
 use passes::LanePasses;
+use points::PointSteps;
 
 /// A Galerkin variational integrator with `K` intervals between Lobatto nodes, `1 ≤ K ≤ 8`.
 ///
@@ -26,9 +28,9 @@ use passes::LanePasses;
 /// Linear momentum is kept by polynomials, and by every frequency from `K = 2` on, since the curves then contain the
 /// constants. One interval is RATTLE, and with a frequency the exponential integrator on the trapezoidal rule.
 ///
-/// Polynomials on a constant mass matrix are found by passes over all nodes at once, a node per vector lane, at a cost of a few kernels
-/// per pass; other steps, and those whose passes do not converge, by Newton's iteration on `K (n + m)` unknowns. `K = 8` fills
-/// the lanes, and is the fastest member for errors below 1e-4.
+/// Polynomials are found by passes over all nodes at once, a node per vector lane, at a cost of a few kernels per pass; mixed curves, and steps whose
+/// passes do not converge, by Newton's iteration on `K (n + m)` unknowns. `K = 8` fills the lanes, and is the fastest member for errors below 1e-4;
+/// [`propose`](super::propose) finds the step size for an error.
 ///
 /// ```
 /// use evi_core::prelude::*;
@@ -94,10 +96,16 @@ impl<S: MechanicalSystem, const K: usize, F: NodalCurves<S>> Scheme<S> for Galer
             return Err(SchemeError::UnsupportedStructure { scheme: "Galerkin", requirement });
         }
         let action = GalerkinAction::new(mechanics, self.curves.tables::<K>(h)?, h);
-        let has_passes = F::ARE_POLYNOMIALS && LanePasses::<S, K>::EXIST && !self.by_newton;
+        let has_passes = F::ARE_POLYNOMIALS && !self.by_newton;
+        let is_mass_constant = LanePasses::<S, K>::EXIST;
         Ok(GalerkinStep {
             // A mass matrix that is singular leaves the step to Newton's iteration.
-            passes: if has_passes { LanePasses::new(&action.mechanics, h).ok() } else { None },
+            passes: if has_passes && is_mass_constant {
+                LanePasses::new(&action.mechanics, h).ok()
+            } else {
+                None
+            },
+            points: (has_passes && !is_mass_constant).then(|| PointSteps::new(&action.mechanics, h)),
             newton: NewtonSolve::new(&action),
             action,
         })
@@ -107,16 +115,20 @@ impl<S: MechanicalSystem, const K: usize, F: NodalCurves<S>> Scheme<S> for Galer
 /// The one-step map of a [`Galerkin`] scheme, with the storage of its iterations: nothing is allocated under a step.
 pub struct GalerkinStep<S: MechanicalSystem, F: NodalCurves<S>, const K: usize> {
     action: GalerkinAction<S, F::Tables<K>, K>,
+    /// Of scenes with a constant mass.
     passes: Option<LanePasses<S, K>>,
+    /// Of all others.
+    points: Option<PointSteps<S, K>>,
     newton: NewtonSolve<S, K>,
 }
 
 impl<S: MechanicalSystem, F: NodalCurves<S>, const K: usize> GalerkinStep<S, F, K> {
     /// How its steps are solved: which iteration, in which vector instructions; to be printed.
     pub fn iteration(&self) -> Iteration {
-        match &self.passes {
-            Some(passes) => Iteration::Passes(passes.instruction_set()),
-            None => Iteration::Newton,
+        match (&self.passes, &self.points) {
+            (Some(passes), _) => Iteration::Passes(passes.instruction_set()),
+            (_, Some(passes)) => Iteration::Passes(passes.instruction_set()),
+            _ => Iteration::Newton,
         }
     }
 }
@@ -174,14 +186,18 @@ impl<S: MechanicalSystem, F: NodalCurves<S>, const K: usize> GalerkinStep<S, F, 
         round_off: R,
         tally: &mut impl Tally,
     ) -> Result<[Lost<S, R>; 2], StepError> {
-        if let Some(passes) = &mut self.passes {
-            if let Some(end) = passes.solve(&self.action.mechanics, state, tally) {
-                let lost = passes.land(&self.action.mechanics, state, round_off, end, tally)?;
-                self.newton.remember(None);
-                return Ok(lost);
-            }
-            tally.count_newton();
-            passes.forget();
+        let mechanics = &self.action.mechanics;
+        // Branches on constants, so that a scene has code for one kind of passes.
+        let landed = if !F::ARE_POLYNOMIALS {
+            None
+        } else if LanePasses::<S, K>::EXIST {
+            by_passes(&mut self.passes, mechanics, state, round_off, tally)?
+        } else {
+            by_passes(&mut self.points, mechanics, state, round_off, tally)?
+        };
+        if let Some(lost) = landed {
+            self.newton.remember(None);
+            return Ok(lost);
         }
         let points = self.newton.solve(&self.action, state, tally)?;
         let t = state.t + self.action.h();
@@ -199,12 +215,61 @@ impl<S: MechanicalSystem, F: NodalCurves<S>, const K: usize> GalerkinStep<S, F, 
     }
 }
 
+/// Passes over all nodes, with the past that they begin from.
+trait NodePasses<S: MechanicalSystem> {
+    /// What passes find.
+    type End;
+
+    /// The end of the step from `start`, if the passes converge: from the last steps, or from the state alone.
+    fn solve(
+        &mut self,
+        mechanics: &Mechanics<S>,
+        start: &State<S>,
+        tally: &mut impl Tally,
+    ) -> Option<Self::End>;
+
+    /// Overwrites `state` with that end, on the constraints and the hidden ones to round-off, and returns the digits that this loses.
+    fn land<R: RoundOff<S>>(
+        &mut self,
+        mechanics: &Mechanics<S>,
+        state: &mut State<S>,
+        round_off: R,
+        end: Self::End,
+        tally: &mut impl Tally,
+    ) -> Result<[Lost<S, R>; 2], StepError>;
+
+    /// Drops the past: the next step is not predicted from it.
+    fn forget(&mut self);
+}
+
+/// Takes the step by passes; `None` if there are none, or if they do not converge.
+#[inline]
+fn by_passes<S: MechanicalSystem, R: RoundOff<S>>(
+    passes: &mut Option<impl NodePasses<S>>,
+    mechanics: &Mechanics<S>,
+    state: &mut State<S>,
+    round_off: R,
+    tally: &mut impl Tally,
+) -> Result<Option<[Lost<S, R>; 2]>, StepError> {
+    let Some(passes) = passes else { return Ok(None) };
+    if let Some(end) = passes.solve(mechanics, state, tally) {
+        return passes.land(mechanics, state, round_off, end, tally).map(Some);
+    }
+    tally.count_newton();
+    passes.forget();
+    Ok(None)
+}
+
 memory!([S: MechanicalSystem, F: NodalCurves<S>, const K: usize] GalerkinStep<S, F, K>, |words|
-    Self { action, passes, newton } => {
+    Self { action, passes, points, newton } => {
         action.for_each_number(|number| words.fixed(number));
         words.fixed(if passes.is_some() { 1.0 } else { 0.0 });
         if let Some(passes) = passes {
             words.part(passes);
+        }
+        words.fixed(if points.is_some() { 1.0 } else { 0.0 });
+        if let Some(points) = points {
+            words.part(points);
         }
         words.part(newton);
     }

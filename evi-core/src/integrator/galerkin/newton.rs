@@ -21,7 +21,7 @@ pub(super) struct NewtonSolve<S: MechanicalSystem, const K: usize> {
 
 impl<S: MechanicalSystem, const K: usize> NewtonSolve<S, K> {
     pub(super) fn new<T: NodalTables<K>>(action: &GalerkinAction<S, T, K>) -> Self {
-        Self { extrapolation: Extrapolation::new(action), storage: NewtonStorage::new::<S, K>(), past: None }
+        Self { extrapolation: Extrapolation::new(action), storage: NewtonStorage::new(action), past: None }
     }
 
     /// Keeps the points of a step that was taken, or that the step was taken by other means.
@@ -144,16 +144,28 @@ impl<S: MechanicalSystem, const K: usize> Points<S, K> {
 struct NewtonStorage {
     /// The matrix by columns; its factors while a correction is computed.
     entries: Vec<f64>,
+    /// Node by node.
     residual: Vec<f64>,
+    /// In the order of the matrix.
+    ordered: Vec<f64>,
+    /// For every place in the matrix its index node by node.
+    indices: Vec<usize>,
     factors: InPlaceLu,
 }
 
 impl NewtonStorage {
-    fn new<S: MechanicalSystem, const K: usize>() -> Self {
-        let dimension = K * (S::N_COORDINATES + S::N_CONSTRAINTS);
+    fn new<S: MechanicalSystem, T: NodalTables<K>, const K: usize>(action: &GalerkinAction<S, T, K>) -> Self {
+        let block = S::N_COORDINATES + S::N_CONSTRAINTS;
+        let dimension = K * block;
+        let mut indices = vec![0; dimension];
+        for index in 0..dimension {
+            indices[action.place(index / block, index % block)] = index;
+        }
         Self {
             entries: vec![0.0; dimension * dimension],
             residual: vec![0.0; dimension],
+            ordered: vec![0.0; dimension],
+            indices,
             factors: InPlaceLu::new(dimension),
         }
     }
@@ -175,8 +187,8 @@ impl NewtonStorage {
         tally.begin_iteration();
         let iteration = newton::iterate(|correction| {
             constraint_residual = action.linearize(state, points, &mut self.residual, &mut self.entries);
-            for (col, column) in self.entries.chunks_exact_mut(self.residual.len()).enumerate() {
-                for (row, entry) in column.iter_mut().enumerate() {
+            for (column, &col) in self.entries.chunks_exact_mut(self.residual.len()).zip(&self.indices) {
+                for (entry, &row) in column.iter_mut().zip(&self.indices) {
                     *entry *= scale[row % block] * scale[col % block];
                 }
             }
@@ -191,7 +203,13 @@ impl NewtonStorage {
             smallest_pivot_ratio = smallest_pivot_ratio.min(self.factors.pivot_ratio());
             tally.see_pivot_ratio(self.factors.pivot_ratio());
             apply_scale(&mut self.residual);
-            self.factors.solve(&self.entries, &mut self.residual);
+            for (value, &index) in self.ordered.iter_mut().zip(&self.indices) {
+                *value = self.residual[index];
+            }
+            self.factors.solve(&self.entries, &mut self.ordered);
+            for (value, &index) in self.ordered.iter().zip(&self.indices) {
+                self.residual[index] = *value;
+            }
             apply_scale(&mut self.residual);
             let mut length = 0.0_f64;
             let mut reach = in_units(state.q.as_ref());

@@ -2,6 +2,7 @@
 
 use core::borrow::Borrow;
 
+use super::NodePasses;
 use crate::array::Array;
 use crate::integrator::{StepError, Tally};
 use crate::linear::{Factorization, SingularMatrix};
@@ -45,14 +46,27 @@ impl<S: MechanicalSystem, const K: usize> LanePasses<S, K> {
         self.instructions
     }
 
-    /// Drops the past: the next step is not predicted from it.
-    pub(super) fn forget(&mut self) {
-        self.known = 0;
+    /// The end of the step without a past.
+    #[cold]
+    fn begin(
+        &mut self,
+        mechanics: &Mechanics<S>,
+        start: &State<S>,
+        tally: &mut impl Tally,
+    ) -> Option<LaneEnd<S>> {
+        let at_start = mechanics.acceleration_with(start.t, &start.q, &start.v, &start.inputs).ok()?;
+        let first = FirstGuess::Constant(&at_start.acceleration);
+        let end = self.instructions.run(Passes { step: &mut self.step, start, first }).ok()?;
+        tally.count_corrections(end.passes);
+        Some(end)
     }
+}
 
-    /// The end of the step from `start`, if the passes converge: from the accelerations of the last steps, or from that of the state.
+impl<S: MechanicalSystem, const K: usize> NodePasses<S> for LanePasses<S, K> {
+    type End = LaneEnd<S>;
+
     #[inline]
-    pub(super) fn solve(
+    fn solve(
         &mut self,
         mechanics: &Mechanics<S>,
         start: &State<S>,
@@ -69,25 +83,8 @@ impl<S: MechanicalSystem, const K: usize> LanePasses<S, K> {
         self.begin(mechanics, start, tally)
     }
 
-    /// The same without a past.
-    #[cold]
-    fn begin(
-        &mut self,
-        mechanics: &Mechanics<S>,
-        start: &State<S>,
-        tally: &mut impl Tally,
-    ) -> Option<LaneEnd<S>> {
-        let at_start = mechanics.acceleration_with(start.t, &start.q, &start.v, &start.inputs).ok()?;
-        let first = FirstGuess::Constant(&at_start.acceleration);
-        let end = self.instructions.run(Passes { step: &mut self.step, start, first }).ok()?;
-        tally.count_corrections(end.passes);
-        Some(end)
-    }
-
-    /// Overwrites `state` with the end of the step that the passes have found, on the constraints and the hidden ones to round-off, and returns the digits that
-    /// this loses.
     #[inline]
-    pub(super) fn land<R: RoundOff<S>>(
+    fn land<R: RoundOff<S>>(
         &mut self,
         mechanics: &Mechanics<S>,
         state: &mut State<S>,
@@ -119,6 +116,11 @@ impl<S: MechanicalSystem, const K: usize> LanePasses<S, K> {
         self.past[0].clone_from(&self.step.accelerations);
         self.known = PAST.min(self.known + 1);
         Ok([lost_q, lost_p])
+    }
+
+    #[inline]
+    fn forget(&mut self) {
+        self.known = 0;
     }
 }
 
