@@ -582,7 +582,7 @@ fn steps_whose_matrix_has_lost_its_digits_are_refused() {
             let (q, v) = ([random(), random(), random()], [random(), random(), random()]);
             let simulation = Simulation::new(system, Evi::trapezoid(0.00785));
             let Ok(mut run) = simulation.start_projected(0.0, q, v) else { continue };
-            match run.advance().map(State::clone) {
+            match run.advance().cloned() {
                 Ok(state) => {
                     let [rod] = run.mechanics().constraint_residual(&state);
                     assert!(rod.abs() < 1e-16, "{rod:e}");
