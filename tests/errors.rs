@@ -247,6 +247,10 @@ fn a_constraint_without_gradient_is_singular() {
     let error = start_error(point, Evi::midpoint(0.01), [0.0; 3], [0.0; 3]);
     let singular = SingularMatrix { pivot_ratio: 0.0 };
     check_equal(error, StartError::Projection(ProjectionError::Singular(singular)));
+    // It does not follow from the other one.
+    let folded = DoublePendulum { l1: 0.0, ..DOUBLE };
+    let error = start_error(folded, Evi::midpoint(0.01), [0.0, 0.0, 0.0, -1.0], [0.0; 4]);
+    check_equal(error, StartError::Projection(ProjectionError::Singular(singular)));
 }
 
 /// The motion is determined, the multipliers are not: `tests/redundant.rs` integrates such scenes, where that is stated.
@@ -578,7 +582,7 @@ fn steps_whose_matrix_has_lost_its_digits_are_refused() {
             let (q, v) = ([random(), random(), random()], [random(), random(), random()]);
             let simulation = Simulation::new(system, Evi::trapezoid(0.00785));
             let Ok(mut run) = simulation.start_projected(0.0, q, v) else { continue };
-            match run.advance().map(State::clone) {
+            match run.advance().cloned() {
                 Ok(state) => {
                     let [rod] = run.mechanics().constraint_residual(&state);
                     assert!(rod.abs() < 1e-16, "{rod:e}");

@@ -5,9 +5,9 @@ use evi_core::comparison::{Failure, Solver};
 use evi_core::mechanics::Mechanics;
 use evi_examples::{ReferenceOrigin, Scene, Visitor};
 
-use super::Refusal;
 use super::measure::Outcome;
 use super::methods::{self, Method, MethodFacts};
+use super::{Motion, Refusal};
 use crate::external::{HeyokaError, HeyokaRow, heyoka};
 
 /// A scene of the gallery, with every method.
@@ -112,7 +112,7 @@ pub fn all() -> Vec<Box<dyn AnyScene>> {
 }
 
 struct Typed<S: Scene> {
-    system: S,
+    motion: Motion<S>,
     mechanics: Mechanics<S>,
     methods: Vec<Method<S>>,
     start_energy: f64,
@@ -121,14 +121,14 @@ struct Typed<S: Scene> {
 
 impl<S: Scene> Typed<S> {
     fn new() -> Self {
-        let system = S::standard();
-        let mechanics = Mechanics::new(&system);
-        let (q, v) = system.standard_motion();
-        let p = mechanics.momentum_at(0.0, &q, &v);
-        let start_energy = mechanics.energy_at(0.0, &q, &v);
+        let motion = Motion::<S>::standard();
+        let Motion { system, q, v, .. } = &motion;
+        let mechanics = Mechanics::new(system);
+        let p = mechanics.momentum_at(0.0, q, v);
+        let start_energy = mechanics.energy_at(0.0, q, v);
         let start_momenta =
-            S::MOMENTA.iter().map(|momentum| (momentum.value)(&system, q.as_ref(), p.as_ref())).collect();
-        Self { system, mechanics, methods: methods::all(), start_energy, start_momenta }
+            S::MOMENTA.iter().map(|momentum| (momentum.value)(system, q.as_ref(), p.as_ref())).collect();
+        Self { motion, mechanics, methods: methods::all(), start_energy, start_momenta }
     }
 }
 
@@ -154,14 +154,13 @@ impl<S: Scene> AnyScene for Typed<S> {
     }
 
     fn start(&self, method: usize, resolution: f64) -> Result<Box<dyn Solver>, Failure> {
-        (self.methods[method].start)(&self.system, resolution)
+        (self.methods[method].start)(&self.motion, resolution)
     }
 
     fn runs_of_program(&self, tolerances: &[f64]) -> Result<Vec<(f64, Outcome)>, Failure> {
-        let (q, v) = self.system.standard_motion();
+        let Motion { system, q, v, .. } = &self.motion;
         let start = (q.as_ref(), v.as_ref());
-        let rows =
-            heyoka(S::NAME, &self.system, start, S::HORIZON, tolerances, REPETITIONS).map_err(refused)?;
+        let rows = heyoka(S::NAME, system, start, S::HORIZON, tolerances, REPETITIONS).map_err(refused)?;
         let outcome = |row: HeyokaRow| {
             let (q, v) = (array::<S>(&row.q), array::<S>(&row.v));
             let p = self.mechanics.momentum_at(S::HORIZON, &q, &v);
@@ -219,7 +218,7 @@ impl<S: Scene> Typed<S> {
                 mechanics.hidden_constraint_residual_at(t, q, v).as_ref().iter().copied(),
             ),
             momentum: largest(
-                momenta.map(|(momentum, start)| (momentum.value)(&self.system, q.as_ref(), p) - start),
+                momenta.map(|(momentum, start)| (momentum.value)(&self.motion.system, q.as_ref(), p) - start),
             ),
         }
     }

@@ -6,18 +6,17 @@
 
 mod extrapolation;
 mod index_1;
-mod octuple;
 
 use std::process::ExitCode;
 
 use clap::Parser;
 
+use evi_benches::octuple::Octuple;
 use evi_core::array::Array;
 use evi_core::scalar::Scalar;
 use evi_examples::{ReferenceOrigin, Scene, Visitor, visit_all};
 
 use index_1::Index1;
-use octuple::Octuple;
 
 /// Ends of the standard motions, computed anew.
 #[derive(Parser)]

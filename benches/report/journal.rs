@@ -10,7 +10,8 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::machine::Machine;
+use evi_benches::program::machine::Machine;
+
 use crate::results::{LongRun, Row, Speedup};
 
 /// A piece of work.
@@ -149,7 +150,7 @@ mod tests {
     use std::path::PathBuf;
 
     use super::{Finished, Journal, JournalError, Piece};
-    use crate::machine::Machine;
+    use evi_benches::program::machine::Machine;
 
     fn folder(name: &str) -> PathBuf {
         let path = std::env::temp_dir().join(format!("evi_journal_{name}_{}", std::process::id()));

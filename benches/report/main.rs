@@ -7,7 +7,6 @@
 
 mod files;
 mod journal;
-mod machine;
 mod orders;
 mod results;
 mod speedup;
@@ -18,17 +17,18 @@ mod verdicts;
 use std::error::Error;
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::thread;
 use std::time::Duration;
 
 use clap::Parser;
 
 use evi_benches::comparison::scenes::{self, AnyScene};
+use evi_benches::program::machine::Machine;
+use evi_benches::program::progress::Ending;
+use evi_benches::program::{self, check_names, is_chosen};
 
 use journal::Journal;
-use machine::Machine;
 use results::{Results, Row};
-use sweep::{Ending, Plan, Thoroughness};
+use sweep::{Plan, Thoroughness};
 
 /// Error against run time, every method on every scene.
 #[derive(Parser)]
@@ -56,13 +56,9 @@ struct Options {
     counted: Option<Vec<String>>,
 }
 
-/// For the largest scenes: a run lives on the stack until it is boxed, and a composition holds a map for each of its stages.
-const STACK_BYTES: usize = 1 << 28;
-
 fn main() -> ExitCode {
     let options = Options::parse();
-    let thread = thread::Builder::new().stack_size(STACK_BYTES).spawn(|| measured(options));
-    thread.expect("a thread").join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+    program::on_a_large_stack(|| measured(options))
 }
 
 fn measured(options: Options) -> ExitCode {
@@ -86,7 +82,7 @@ fn run(options: Options) -> Result<Ending, Box<dyn Error>> {
     let methods = chosen_methods(&*scenes[0], &options.method)?;
     let thoroughness = Thoroughness::new(options.quick, options.peers);
     let budget = options.time_budget.map_or(thoroughness.standard_budget(), Duration::from_secs);
-    files::prepare(&options.out)?;
+    program::files::prepare(&options.out)?;
     let mut journal = Journal::open(&options.out, options.quick, Machine::present())?;
     let plan = Plan { scenes: &scenes, methods: &methods };
     let ending = sweep::run(&plan, thoroughness, budget, &mut journal)?;
@@ -110,22 +106,14 @@ fn run(options: Options) -> Result<Ending, Box<dyn Error>> {
 fn chosen_scenes(names: &[String]) -> Result<Vec<Box<dyn AnyScene>>, String> {
     let all = scenes::all();
     check_names("scene", names, &all.iter().map(|scene| scene.facts().name).collect::<Vec<_>>())?;
-    let is_chosen = |name: &str| names.is_empty() || names.iter().any(|chosen| chosen == name);
-    Ok(all.into_iter().filter(|scene| is_chosen(scene.facts().name)).collect())
+    Ok(all.into_iter().filter(|scene| is_chosen(scene.facts().name, names)).collect())
 }
 
 /// Numbers of the methods, the same for every scene.
 fn chosen_methods(scene: &dyn AnyScene, names: &[String]) -> Result<Vec<usize>, String> {
     let all: Vec<&str> = scene.methods().iter().map(|method| method.name).collect();
     check_names("method", names, &all)?;
-    Ok((0..all.len()).filter(|&method| names.is_empty() || names.iter().any(|n| n == all[method])).collect())
-}
-
-fn check_names(kind: &str, names: &[String], all: &[&str]) -> Result<(), String> {
-    match names.iter().find(|name| !all.contains(&name.as_str())) {
-        Some(name) => Err(format!("there is no {kind} `{name}`\n       {kind}s: {}", all.join(", "))),
-        None => Ok(()),
-    }
+    Ok((0..all.len()).filter(|&method| is_chosen(all[method], names)).collect())
 }
 
 fn gather(plan: &Plan<'_>, quick: bool, journal: &Journal) -> Results {

@@ -9,7 +9,7 @@ use evi_benches::comparison::scenes::SceneFacts;
 /// Everything that was measured, and with what.
 #[derive(Serialize)]
 pub(crate) struct Results {
-    pub(crate) machine: crate::machine::Machine,
+    pub(crate) machine: evi_benches::program::machine::Machine,
     pub(crate) quick: bool,
     /// Accuracies of the verdicts.
     pub(crate) errors: [f64; crate::verdicts::ERRORS.len()],

@@ -2,11 +2,7 @@
 
 use std::collections::HashSet;
 use std::error::Error;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
-
-use indicatif::{ProgressBar, ProgressStyle};
 
 use evi_core::integrator::StartError;
 
@@ -14,6 +10,7 @@ use evi_benches::comparison::Refusal;
 use evi_benches::comparison::measure::{Effort, long_run, measure};
 use evi_benches::comparison::methods::{MethodFacts, Path, Resolution};
 use evi_benches::comparison::scenes::{AnyScene, SceneFacts};
+use evi_benches::program::progress::{self, Ending, Interruption};
 
 use crate::journal::{Finished, Journal, Piece};
 use crate::results::{LongRun, Row};
@@ -108,13 +105,6 @@ impl Plan<'_> {
     }
 }
 
-/// Whether the measurement is complete.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Ending {
-    Complete,
-    Interrupted,
-}
-
 /// Does the pieces of work that the journal does not hold, and keeps each in it.
 pub(crate) fn run(
     plan: &Plan<'_>,
@@ -122,17 +112,10 @@ pub(crate) fn run(
     budget: Duration,
     journal: &mut Journal,
 ) -> Result<Ending, Box<dyn Error>> {
-    let interrupted = Arc::new(AtomicBool::new(false));
-    let flag = Arc::clone(&interrupted);
-    ctrlc::set_handler(move || {
-        // Who asks twice does not want to wait.
-        if flag.swap(true, Ordering::Relaxed) {
-            std::process::exit(130);
-        }
-    })?;
+    let interruption = Interruption::listen()?;
     let pieces = plan.pieces();
     let finished: HashSet<Piece> = journal.pieces();
-    let bar = progress_bar(pieces.len() as u64);
+    let bar = progress::bar(pieces.len() as u64);
     bar.set_position(pieces.iter().filter(|piece| finished.contains(&piece.2)).count() as u64);
     bar.reset_eta();
     let begin = Instant::now();
@@ -140,7 +123,7 @@ pub(crate) fn run(
     for (index, (scene, method, piece)) in todo.iter().enumerate() {
         bar.set_message(text(piece));
         let left = budget.saturating_sub(begin.elapsed()) / (todo.len() - index) as u32;
-        let work = Work { scene: *scene, thoroughness, left, interrupted: &interrupted };
+        let work = Work { scene: *scene, thoroughness, left, interruption: &interruption };
         let mut done =
             Finished { piece: piece.clone(), rows: Vec::new(), speedups: Vec::new(), long_run: None };
         match (piece, method) {
@@ -150,7 +133,7 @@ pub(crate) fn run(
             }
             _ => done.speedups = speedups(*scene, &rows(journal, scene.facts().name), thoroughness.quick),
         }
-        if interrupted.load(Ordering::Relaxed) {
+        if interruption.is_wanted() {
             bar.abandon_with_message("interrupted; what is finished is kept");
             return Ok(Ending::Interrupted);
         }
@@ -163,11 +146,6 @@ pub(crate) fn run(
 
 fn rows(journal: &Journal, scene: &str) -> Vec<Row> {
     journal.finished.iter().flat_map(|piece| &piece.rows).filter(|row| row.scene == scene).cloned().collect()
-}
-
-fn progress_bar(length: u64) -> ProgressBar {
-    let style = ProgressStyle::with_template("{bar:30} {pos}/{len}  {msg}  about {eta} left");
-    ProgressBar::new(length).with_style(style.expect("a template without mistakes"))
 }
 
 fn text(piece: &Piece) -> String {
@@ -184,7 +162,7 @@ struct Work<'w> {
     thoroughness: Thoroughness,
     /// Time for this piece.
     left: Duration,
-    interrupted: &'w AtomicBool,
+    interruption: &'w Interruption,
 }
 
 impl Work<'_> {
@@ -209,7 +187,7 @@ impl Work<'_> {
                 skipped -= 1;
                 continue;
             }
-            if self.interrupted.load(Ordering::Relaxed) {
+            if self.interruption.is_wanted() {
                 break;
             }
             if !rows.is_empty() && begin.elapsed() + predicted > allowed {

@@ -1,6 +1,4 @@
-"use strict";
 // Draws the results: one section per scene, with figures as SVG and a table that can be sorted.
-const results = JSON.parse(document.getElementById("data").textContent);
 const COLOURS = 8;
 const MARKS = ["circle", "square", "triangle", "diamond", "cross"];
 const shown = new Set(results.methods.map((method) => method.name));
@@ -10,29 +8,7 @@ const look = new Map(results.methods.map((method, i) => [method.name, {
   dash: method.is_member ? "" : method.path === "generic" ? "2 3" : "6 3",
 }]));
 
-// Elements.
-function element(name, attributes = {}, ...children) {
-  const node = document.createElement(name);
-  for (const [key, value] of Object.entries(attributes)) node.setAttribute(key, value);
-  node.append(...children);
-  return node;
-}
-function svg(name, attributes = {}, text) {
-  const node = document.createElementNS("http://www.w3.org/2000/svg", name);
-  for (const [key, value] of Object.entries(attributes)) node.setAttribute(key, value);
-  if (text !== undefined) node.textContent = text;
-  return node;
-}
-
 // Numbers.
-const SUPERSCRIPTS = { "-": "⁻", 0: "⁰", 1: "¹", 2: "²", 3: "³", 4: "⁴", 5: "⁵", 6: "⁶", 7: "⁷", 8: "⁸", 9: "⁹" };
-const power = (exponent) => "10" + [...String(exponent)].map((c) => SUPERSCRIPTS[c]).join("");
-function short(value) {
-  if (value === null || value === undefined) return "";
-  if (typeof value !== "number") return String(value);
-  if (Number.isInteger(value) && Math.abs(value) < 1e7) return String(value);
-  return Math.abs(value) >= 0.01 && Math.abs(value) < 1e4 ? String(Number(value.toPrecision(4))) : value.toExponential(2);
-}
 function duration(seconds) {
   for (const [unit, size] of [["s", 1], ["ms", 1e-3], ["µs", 1e-6]]) {
     if (seconds >= size) return `${(seconds / size).toPrecision(3)} ${unit}`;

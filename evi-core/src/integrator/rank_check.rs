@@ -23,6 +23,8 @@ fn refusal<S: MechanicalSystem>(found: &ConstraintRank<S>) -> Option<StartError>
     let (smallest_kept, largest_dropped) = found.gap();
     let (rank, constraints, dependent) = (found.rank(), S::N_CONSTRAINTS, found.dependent());
     match S::STATED_RANK {
+        // Nothing follows from the others: the solver says what is singular.
+        None if found.lacks_gradient => None,
         None if rank < constraints => Some(StartError::DependentConstraints {
             rank,
             constraints,

@@ -63,8 +63,9 @@ impl<S: MechanicalSystem, const R: usize> RowSpace<S, R> {
         });
         let mut basis: Square<S> = Array::from_fn(|_| Array::from_fn(|_| 0.0));
         let mut independent = S::PerConstraint::<usize>::from_fn(|c| c);
-        let smallest = orthonormal::span(&gradients, R, &mut basis, &mut independent);
-        orthonormal::complete(R, &mut basis);
+        let mut rests = gradients.clone();
+        let smallest = orthonormal::span(rests.as_mut(), R, basis.as_mut(), independent.as_mut());
+        orthonormal::complete(R, basis.as_mut());
         let coefficients = Array::from_fn(|k| {
             Array::from_fn(|c| if k < R { orthonormal::product(&basis[k], &gradients[c]) } else { 0.0 })
         });
@@ -147,7 +148,7 @@ where
             })
         }))?;
         let mut rows: ConstraintSquare<S> = Array::from_fn(|_| Array::from_fn(|_| 0.0));
-        orthonormal::in_order(&start.coefficients, R, &mut rows);
+        orthonormal::in_order(start.coefficients.as_ref(), R, rows.as_mut());
         let shares = Array::from_fn(|row| {
             Array::from_fn(|k| {
                 if k <= row && row < R {

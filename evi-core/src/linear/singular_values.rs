@@ -8,30 +8,27 @@ use crate::scalar::Scalar;
 /// Convergence is quadratic; sizes up to a hundred take below ten sweeps.
 const MOST_SWEEPS: usize = 60;
 
-/// The singular values of the matrix with these columns, in descending order.
-pub(crate) fn singular_values<V, W, L>(mut columns: W) -> L
-where
-    V: Array<f64>,
-    W: Array<V>,
-    L: Array<f64>,
-{
-    let m = W::LEN;
-    let largest = (0..m).map(|c| product(&columns[c], &columns[c])).fold(0.0, |x: f64, y| x.max(y));
+/// Overwrites `values` with the singular values of the matrix with these columns, in descending order, and the columns with rotated ones.
+#[inline(never)]
+pub(crate) fn singular_values<V: Array<f64>>(columns: &mut [V], values: &mut [f64]) {
+    let m = columns.len();
+    let largest = columns.iter().map(|column| product(column, column)).fold(0.0, f64::max);
     for _ in 0..MOST_SWEEPS {
         let mut is_orthogonal = true;
         for p in 0..m {
             for q in p + 1..m {
-                is_orthogonal &= rotate(columns.as_mut(), p, q, largest);
+                is_orthogonal &= rotate(columns, p, q, largest);
             }
         }
         if is_orthogonal {
             break;
         }
     }
-    let mut values = L::from_fn(|c| Scalar::sqrt(product(&columns[c], &columns[c])));
+    for (value, column) in values.iter_mut().zip(columns) {
+        *value = Scalar::sqrt(product(column, column));
+    }
     // Total order, in which a NaN is the largest.
-    values.as_mut().sort_unstable_by(|x, y| y.total_cmp(x));
-    values
+    values.sort_unstable_by(|x, y| y.total_cmp(x));
 }
 
 /// Rotates two columns until they are orthogonal; returns whether they were. What is below a rounding of the `largest` square has no direction.
@@ -59,11 +56,16 @@ fn rotate<V: Array<f64>>(columns: &mut [V], p: usize, q: usize, largest: f64) ->
 mod tests {
     use super::*;
 
+    fn of<const N: usize, const M: usize>(mut columns: [[f64; N]; M]) -> [f64; M] {
+        let mut values = [0.0; M];
+        singular_values(&mut columns, &mut values);
+        values
+    }
+
     #[test]
     fn known_values() {
-        let values: [f64; 2] = singular_values([[3.0, 0.0, 4.0], [4.0, 0.0, -3.0]]);
-        assert_eq!(values, [5.0, 5.0]);
-        let values: [f64; 3] = singular_values([[1.0, 1.0], [1.0, 1.0], [0.0, 2.0]]);
+        assert_eq!(of([[3.0, 0.0, 4.0], [4.0, 0.0, -3.0]]), [5.0, 5.0]);
+        let values = of([[1.0, 1.0], [1.0, 1.0], [0.0, 2.0]]);
         // G Gᵀ = [[2, 2], [2, 6]]: squares 4 ± 2√2.
         let expected = [(4.0 + 8.0_f64.sqrt()).sqrt(), (4.0 - 8.0_f64.sqrt()).sqrt(), 0.0];
         assert!((0..3).all(|k| (values[k] - expected[k]).abs() < 1e-15), "{values:?}");
@@ -72,7 +74,7 @@ mod tests {
     #[test]
     fn an_angle_of_1e_8_is_a_singular_value_and_no_round_off() {
         let angle = 1e-8_f64;
-        let values: [f64; 2] = singular_values([[1.0, 0.0], [angle.cos(), angle.sin()]]);
+        let values = of([[1.0, 0.0], [angle.cos(), angle.sin()]]);
         // √(1 − cos angle) = √2 sin(angle/2).
         let expected = 2.0_f64.sqrt() * (0.5 * angle).sin();
         assert!((values[1] / expected - 1.0).abs() < 1e-7, "{values:?}");

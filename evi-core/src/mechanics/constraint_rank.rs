@@ -34,6 +34,8 @@ pub struct ConstraintRank<S: MechanicalSystem> {
     rank: usize,
     /// Constraints, `rank` independent ones first.
     order: S::PerConstraint<usize>,
+    /// Whether the gradient of some constraint vanishes: it follows from nothing.
+    pub(crate) lacks_gradient: bool,
 }
 
 impl<S: MechanicalSystem> ConstraintRank<S> {
@@ -169,18 +171,22 @@ impl<S: MechanicalSystem> Mechanics<S> {
         if hides_less { by_coordinates } else { by_kinetic_energy }
     }
 
-    fn rank_of(forces: S::PerConstraint<S::PerCoordinate<f64>>) -> ConstraintRank<S> {
-        let values: S::PerConstraint<f64> = singular_values(forces.clone());
+    #[inline(never)]
+    fn rank_of(mut forces: S::PerConstraint<S::PerCoordinate<f64>>) -> ConstraintRank<S> {
+        let lacks_gradient = forces.as_ref().iter().any(|force| orthonormal::product(force, force) == 0.0);
+        let mut values = S::PerConstraint::<f64>::from_fn(|_| 0.0);
+        singular_values(forces.clone().as_mut(), values.as_mut());
         let least = tolerance::<S>(&values);
         let rank = values.as_ref().iter().filter(|value| **value > least).count();
         let mut order = S::PerConstraint::<usize>::from_fn(|c| c);
         let mut basis = S::PerConstraint::<S::PerCoordinate<f64>>::from_fn(|_| Array::from_fn(|_| 0.0));
         // Of full rank, the last one in this order is the most dependent.
-        orthonormal::span(&forces, rank, &mut basis, &mut order);
-        ConstraintRank { singular_values: values, rank, order }
+        orthonormal::span(forces.as_mut(), rank, basis.as_mut(), order.as_mut());
+        ConstraintRank { singular_values: values, rank, order, lacks_gradient }
     }
 
     /// The columns of `L⁻¹ Gᵀ`, scaled to length 1; with `diag √|Mᵢᵢ|` for `L` where `M` is not positive definite.
+    #[inline(never)]
     fn unit_constraint_forces(
         &self,
         t: f64,

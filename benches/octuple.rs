@@ -7,11 +7,11 @@ use f256::f256;
 
 /// A number of IEEE octuple precision; its operations and functions are rounded once.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
-pub(crate) struct Octuple(f256);
+pub struct Octuple(f256);
 
 impl Octuple {
     /// The nearest `f64`.
-    pub(crate) fn rounded(self) -> f64 {
+    pub fn rounded(self) -> f64 {
         self.0.to_string().parse().expect("the digits of a number")
     }
 }

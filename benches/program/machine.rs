@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 /// Processor, compiler and source of a measurement.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) struct Machine {
+pub struct Machine {
     processor: String,
     cores: usize,
     system: String,
@@ -24,7 +24,7 @@ pub(crate) struct Machine {
 
 impl Machine {
     /// This machine, this build, now.
-    pub(crate) fn present() -> Self {
+    pub fn present() -> Self {
         Self {
             processor: processor().unwrap_or_else(|| std::env::consts::ARCH.to_owned()),
             cores: std::thread::available_parallelism().map_or(1, usize::from),
@@ -42,12 +42,12 @@ impl Machine {
     }
 
     /// Whether measurements of both belong together: all but the date.
-    pub(crate) fn is_like(&self, other: &Self) -> bool {
+    pub fn is_like(&self, other: &Self) -> bool {
         Self { date: 0, ..self.clone() } == Self { date: 0, ..other.clone() }
     }
 
     /// One line.
-    pub(crate) fn line(&self) -> String {
+    pub fn line(&self) -> String {
         let Self { processor, cores, system, compiler, flags, vector_instructions, revision, .. } = self;
         let flags = if flags.is_empty() { "none" } else { flags };
         format!(
