@@ -38,6 +38,10 @@ impl InPlaceLu {
     /// [`SingularMatrix`] when the smallest pivot is lost in the round-off of the largest.
     pub(crate) fn factor(&mut self, entries: &mut [f64]) -> Result<(), SingularMatrix> {
         let dimension = self.swaps.len();
+        // Not every entry reaches a pivot.
+        if !entries.iter().all(|entry| entry.is_finite()) {
+            return Err(SingularMatrix { pivot_ratio: f64::NAN });
+        }
         for (col, column) in entries.chunks_exact(dimension.max(1)).enumerate() {
             for (end, &entry) in self.row_ends.iter_mut().zip(column) {
                 if entry != 0.0 {
