@@ -97,6 +97,23 @@ impl<S: MechanicalSystem> Mechanics<S> {
         scale
     }
 
+    /// The largest `|residual_c|` as a share of `Σᵢ |G_ci| rᵢ`, `rᵢ ≥ 0`; 0 where both are, NaN where either is no number.
+    pub(crate) fn share_beside(
+        &self,
+        jacobian: &S::PerJacobianEntry<f64>,
+        reach: &S::PerCoordinate<f64>,
+        residual: &S::PerConstraint<f64>,
+    ) -> f64 {
+        let scale = self.constraint_scale(jacobian, reach);
+        let mut largest = 0.0;
+        for c in 0..S::N_CONSTRAINTS {
+            let share = if residual[c] == 0.0 { 0.0 } else { residual[c].abs() / scale[c] };
+            // Written so that a NaN stays.
+            largest = if share <= largest { largest } else { share };
+        }
+        largest
+    }
+
     /// `G q`: of each constraint, no more than the terms that it adds up, and where it is homogeneous but for a constant, as much.
     #[inline(always)]
     pub(crate) fn reach(

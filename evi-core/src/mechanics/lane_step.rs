@@ -15,7 +15,7 @@
 use super::coupling::{AsScene, Coupling};
 use super::{ConstantLegendre, CoordinateMatrix, ForcePoint, Mechanics, State};
 use crate::array::Array;
-use crate::linear::{LaneGram, SingularMatrix};
+use crate::linear::{Cholesky, LaneGram};
 use crate::newton::{NotConverged, Progress};
 use crate::scalar::{LaneOperation, Lanes, Scalar};
 use crate::scheme::{Columns, LaneTables, PAST};
@@ -100,21 +100,21 @@ impl<S: MechanicalSystem, const K: usize> LaneStep<S, K> {
     const FORCE_VARIES: bool = !S::STRUCTURE.hessian.qq.is_empty()
         || (S::STRUCTURE.forces.exist() && (S::STRUCTURE.forces.on.on_q || S::STRUCTURE.forces.on.on_v));
 
-    /// # Errors
-    /// [`SingularMatrix`] if the mass matrix is: then passes do not determine a step.
-    pub(crate) fn new(mechanics: &Mechanics<S>, h: f64) -> Result<Self, SingularMatrix> {
+    /// `None` if the mass matrix is not positive definite: passes eliminate without pivoting.
+    pub(crate) fn new(mechanics: &Mechanics<S>, h: f64) -> Option<Self> {
         let mass = mechanics.constant_mass();
-        let inverse = CoordinateMatrix::<S>::inverse_of(&mass)?;
+        Cholesky::new::<S::PerCoordinate<f64>>(&mass)?;
+        let inverse = CoordinateMatrix::<S>::inverse_of(&mass).ok()?;
         let is_coupled = |i: usize, j: usize| i == j || !<AsScene as Coupling<S>>::IS_DIAGONAL;
         let inverse_at = |i: usize, j: usize| if is_coupled(i, j) { inverse.at(i, j) } else { 0.0 };
         let couples_all = !<AsMass as Coupling<S>>::IS_DIAGONAL;
         let coupled = S::STRUCTURE.constraint_graph;
         let entries = S::STRUCTURE.jacobian.q;
         let pairs = entries.iter().flat_map(|a| entries.iter().map(move |b| [*a, *b]));
-        Ok(Self {
+        Some(Self {
             constants: Array::from_fn(|i| Lanes::splat(mechanics.constants[i])),
             inverse_mass: CoordinateMatrix::new(Array::from_fn(|i| Array::from_fn(|j| inverse_at(i, j)))),
-            legendre: ConstantLegendre::new(mechanics)?,
+            legendre: ConstantLegendre::new(mechanics).ok()?,
             tables: LaneTables::new::<K>(h),
             units: Array::from_fn(|i| unit(mass[i][i])),
             gram: LaneGram::<S>::new(coupled.iter().copied(), couples_all),

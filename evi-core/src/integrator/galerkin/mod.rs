@@ -99,12 +99,8 @@ impl<S: MechanicalSystem, const K: usize, F: NodalCurves<S>> Scheme<S> for Galer
         let has_passes = F::ARE_POLYNOMIALS && !self.by_newton;
         let is_mass_constant = LanePasses::<S, K>::EXIST;
         Ok(GalerkinStep {
-            // A mass matrix that is singular leaves the step to Newton's iteration.
-            passes: if has_passes && is_mass_constant {
-                LanePasses::new(&action.mechanics, h).ok()
-            } else {
-                None
-            },
+            // A mass matrix that is not positive definite leaves the step to Newton's iteration.
+            passes: if has_passes && is_mass_constant { LanePasses::new(&action.mechanics, h) } else { None },
             points: (has_passes && !is_mass_constant).then(|| PointSteps::new(&action.mechanics, h)),
             newton: NewtonSolve::new(&action),
             action,

@@ -5,7 +5,7 @@ use core::borrow::Borrow;
 use super::NodePasses;
 use crate::array::Array;
 use crate::integrator::{StepError, Tally};
-use crate::linear::{Factorization, SingularMatrix};
+use crate::linear::{Factorization, largest_magnitude};
 use crate::mechanics::{
     FirstGuess, LaneEnd, LaneStep, Lost, Mechanics, Passes, ProjectionError, RoundOff, State, Sum,
 };
@@ -13,6 +13,12 @@ use crate::memory::memory;
 use crate::scalar::{InstructionSet, Lanes};
 use crate::scheme::PAST;
 use crate::system::MechanicalSystem;
+
+/// Ends are on the constraints and on the hidden ones to round-off. What is farther beside them than this share of their terms has been projected
+/// with a matrix that does not determine it, as of masses whose ratio is no number.
+const BESIDE: f64 = 1e-3;
+/// Of the configuration, a length far above round-off and far below a step.
+const SLIGHT: f64 = 1e-10;
 
 /// The passes of a scene, with the past that they begin from.
 pub(super) struct LanePasses<S: MechanicalSystem, const K: usize> {
@@ -30,10 +36,9 @@ impl<S: MechanicalSystem, const K: usize> LanePasses<S, K> {
     /// Whether the scene's steps can be solved so.
     pub(super) const EXIST: bool = LaneStep::<S, K>::EXISTS;
 
-    /// # Errors
-    /// [`SingularMatrix`] if the mass matrix is.
-    pub(super) fn new(mechanics: &Mechanics<S>, h: f64) -> Result<Self, SingularMatrix> {
-        Ok(Self {
+    /// `None` if the mass matrix is not positive definite: the passes eliminate without pivoting.
+    pub(super) fn new(mechanics: &Mechanics<S>, h: f64) -> Option<Self> {
+        Some(Self {
             step: LaneStep::new(mechanics, h)?,
             instructions: InstructionSet::detect(),
             past: core::array::from_fn(|_| Array::filled(Lanes::ZERO)),
@@ -105,11 +110,25 @@ impl<S: MechanicalSystem, const K: usize> NodePasses<S> for LanePasses<S, K> {
         mechanics.subtract_constraint_force(jacobian.as_ref(), shares.as_ref(), pull.as_mut());
         position = position.plus(&self.step.inverse_mass_times(&pull));
         let (q, lost_q) = position.split();
-        let (_, jacobian) = S::constraint_derivatives(constants, t, &q);
+        let (left, jacobian) = S::constraint_derivatives(constants, t, &q);
         let gain = self.step.momentum_gain(mechanics, (state, t), &q);
         let momentum = round_off.momentum(&state.p).plus(&gain);
         let unexpected = S::PerConstraint::<f64>::filled(0.0);
         let (v, momentum) = legendre.project(mechanics, &gram, &jacobian, &unexpected, momentum);
+        // Round-off of the whole configuration passes, also where the constraint's own coordinates are zero, or at rest.
+        let slight = SLIGHT * largest_magnitude(q.as_ref().iter().copied());
+        let reach = Array::from_fn(|i| q[i].abs() + end.difference[i].abs() + slight);
+        let speeds = Array::from_fn(|i| v[i].abs() + (end.difference[i].abs() + slight) / self.h.abs());
+        let rate = mechanics.constraint_rate(jacobian.as_ref(), &v);
+        for (reach, residual) in [(&reach, &left), (&speeds, &rate)] {
+            let beside = mechanics.share_beside(&jacobian, reach, residual);
+            // Written so that a NaN is refused.
+            let is_on_constraints = beside <= BESIDE;
+            if !is_on_constraints {
+                let cause = ProjectionError::NotConverged { corrections: 1, last_correction: beside };
+                return Err(StepError::Projection { t, cause });
+            }
+        }
         let (p, lost_p) = momentum.split();
         state.replace(t, q, v, p)?;
         self.past.swap(0, 1);
