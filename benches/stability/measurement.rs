@@ -23,7 +23,7 @@ pub(crate) fn run(planned: Vec<Planned>) -> Result<(Vec<Row>, Ending), ctrlc::Er
     for Planned { case, parameter, method, work } in planned {
         bar.set_message(format!("{case}: {parameter}, {method}"));
         let clock = Instant::now();
-        let finding = guarded(work).with_known_faults(&parameter, method);
+        let finding = guarded(work);
         if interruption.is_wanted() {
             bar.abandon_with_message("interrupted; what is finished is kept");
             drop(panic::take_hook());

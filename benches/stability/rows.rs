@@ -34,16 +34,6 @@ impl Effort {
     }
 }
 
-/// Rows whose faults are known: they are told, and do not fail the program.
-const KNOWN: &[(&str, &str, &str)] = &[
-    (
-        "m₂ = 1e300",
-        "galerkin_4",
-        "steps end beside the constraints and are accepted, where squares of masses are no numbers",
-    ),
-    ("m₂ = −0.5", "galerkin_4", "a mass matrix that is not positive leaves its velocities ten digits"),
-];
-
 /// A row that is to be found.
 pub(crate) struct Planned {
     pub(crate) case: &'static str,
@@ -124,16 +114,6 @@ impl Finding {
     pub(crate) fn check_text(&self) -> String {
         let Check { steps, worst, .. } = self.check;
         if steps == 0 { format!(" {:>10}", "") } else { format!(" check {worst:>4.0}") }
-    }
-
-    /// With its faults as a remark where they are known of the row.
-    pub(crate) fn with_known_faults(mut self, parameter: &str, method: &str) -> Self {
-        let known = KNOWN.iter().find(|known| known.0 == parameter && known.1 == method);
-        if let Some((_, _, why)) = known.filter(|_| !self.faults.is_empty()) {
-            self.remark = Some(format!("known: {}: {why}", self.faults.join("; ")));
-            self.faults.clear();
-        }
-        self
     }
 
     /// Of a row whose run did not come to an end.
