@@ -4,6 +4,9 @@
 
 use super::{SingularMatrix, checked_pivot_ratio};
 
+/// Number of rows from which on it pays to look for a band.
+const SMALLEST_BAND: usize = 24;
+
 /// `P A = L U` by columns (Golub & Van Loan, Matrix Computations, 4th ed., alg. 3.4.1); what belongs to the factors beside their
 /// entries.
 ///
@@ -38,21 +41,17 @@ impl InPlaceLu {
     /// [`SingularMatrix`] when the smallest pivot is lost in the round-off of the largest.
     pub(crate) fn factor(&mut self, entries: &mut [f64]) -> Result<(), SingularMatrix> {
         let dimension = self.swaps.len();
-        // Not every entry reaches a pivot.
-        if !entries.iter().all(|entry| entry.is_finite()) {
-            return Err(SingularMatrix { pivot_ratio: f64::NAN });
-        }
-        for (col, column) in entries.chunks_exact(dimension.max(1)).enumerate() {
-            for (end, &entry) in self.row_ends.iter_mut().zip(column) {
-                if entry != 0.0 {
-                    *end = col + 1;
-                }
-            }
+        let is_banded = dimension >= SMALLEST_BAND;
+        if is_banded {
+            self.find_row_ends(entries)?;
+        } else {
+            self.row_ends.fill(dimension);
         }
         for k in 0..dimension {
             let column = &entries[k * dimension..(k + 1) * dimension];
-            let end =
-                column.iter().rposition(|&entry| entry != 0.0).map_or(k + 1, |row| (row + 1).max(k + 1));
+            let last =
+                if is_banded { column.iter().rposition(|&entry| entry != 0.0) } else { Some(dimension - 1) };
+            let end = last.map_or(k + 1, |row| (row + 1).max(k + 1));
             let (pivot_row, pivot) = largest_entry(&column[..end], k);
             self.swaps[k] = pivot_row;
             self.column_ends[k] = end;
@@ -86,6 +85,21 @@ impl InPlaceLu {
             }
         }
         self.pivot_ratio = checked_pivot_ratio(dimension, |i| entries[i * dimension + i])?;
+        Ok(())
+    }
+
+    /// Overwrites `row_ends`, or refuses a matrix with an entry that is not finite: beside a band not every one reaches a pivot.
+    fn find_row_ends(&mut self, entries: &[f64]) -> Result<(), SingularMatrix> {
+        if !entries.iter().all(|entry| entry.is_finite()) {
+            return Err(SingularMatrix { pivot_ratio: f64::NAN });
+        }
+        for (col, column) in entries.chunks_exact(self.swaps.len()).enumerate() {
+            for (end, &entry) in self.row_ends.iter_mut().zip(column) {
+                if entry != 0.0 {
+                    *end = col + 1;
+                }
+            }
+        }
         Ok(())
     }
 
