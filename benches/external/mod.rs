@@ -4,6 +4,7 @@
 //! A general solver takes `q̇ = v`, `v̇ = a(t, q, v)` with the accelerations of the index-1 equations: constraints are
 //! differentiated twice and drift within its tolerance.
 
+mod chain_angles;
 mod diffsol;
 mod dop853;
 mod heyoka;
@@ -12,6 +13,7 @@ mod mujoco;
 mod python;
 mod rapier;
 
+pub use chain_angles::{AnglesRow, dop853_chain_20};
 pub use diffsol::{DiffsolError, DiffsolMethod, diffsol};
 pub use dop853::{Dop853Error, dop853};
 pub use heyoka::{HeyokaRow, heyoka};
