@@ -52,6 +52,8 @@
 extern crate self as evi_core;
 
 pub mod array;
+#[cfg(feature = "std")]
+pub mod assembled;
 pub mod baseline;
 #[cfg(feature = "std")]
 pub mod comparison;

@@ -103,6 +103,14 @@ impl<const K: usize> Evi<K> {
     }
 }
 
+impl<const K: usize, F> Evi<K, F> {
+    /// The rule that samples the Lagrangian.
+    #[cfg(feature = "std")]
+    pub(crate) const fn quadrature(&self) -> &Quadrature<K> {
+        &self.quadrature
+    }
+}
+
 impl Evi<2> {
     /// The member on the trapezoidal rule, `S = 2`; the impulse method with [`stiffness`](Self::stiffness).
     pub fn trapezoid(h: f64) -> Self {

@@ -47,7 +47,7 @@ pub use of_rank::OfRank;
 pub use proposal::{LONGEST_TRIAL, Member, PASSES_OF_NEWTON, Proposal, ProposalError, propose};
 pub use rescue::{Rescued, RescuedStep, Rescues};
 pub use run::Run;
-#[cfg(feature = "generic")]
+#[cfg(feature = "std")]
 pub(crate) use run::steps_between;
 pub use simulation::{ConstraintLabel, Simulation, StartError};
 #[cfg(feature = "std")]

@@ -1,0 +1,4 @@
+//! Scenes of many bodies: against the specialised path, certified digits, and what steps keep.
+
+mod agreement;
+mod scenes;
