@@ -29,7 +29,7 @@ macro_rules! chain {
                 let share = 1.0 / N as f64;
                 let system = Chain { m: share, l: share, g: GRAVITY };
                 let q = (1..=N).flat_map(|i| [i as f64 * share, 0.0]).collect();
-                crate::specimen::Specimen::at_rest("chain", N, system, q)
+                crate::specimen::Specimen::at_rest("chain", N, share, system, q)
             }
         }
     };

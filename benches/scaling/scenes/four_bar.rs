@@ -33,5 +33,5 @@ pub(crate) fn specimen() -> Specimen<FourBars> {
     let system = FourBars { m: 1.0, l: 1.0, g: GRAVITY };
     let q = (0..JOINTS).flat_map(|i| [i as f64, 1.0]).collect();
     let v = (0..JOINTS).flat_map(|_| [1.0, 0.0]).collect();
-    Specimen::moving("four_bars", N, system, q, v)
+    Specimen::moving("four_bars", N, 1.0, system, q, v)
 }

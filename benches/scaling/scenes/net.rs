@@ -41,7 +41,7 @@ pub(crate) fn specimen() -> Specimen<Net> {
         let height = if (row + column) % 2 == 0 { 0.0 } else { RISE };
         [SPACING * row as f64, SPACING * column as f64, height]
     };
-    let hanger = 0.2;
-    let system = Net { m: 1.0 / N as f64, l: SPACING.hypot(RISE), hanger, width: SPACING * (M - 1) as f64, rise: RISE, g: GRAVITY };
-    Specimen::at_rest("net", N, system, (0..N).flat_map(place).collect())
+    let (l, hanger) = (SPACING.hypot(RISE), 0.2);
+    let system = Net { m: 1.0 / N as f64, l, hanger, width: SPACING * (M - 1) as f64, rise: RISE, g: GRAVITY };
+    Specimen::at_rest("net", N, l, system, (0..N).flat_map(place).collect())
 }

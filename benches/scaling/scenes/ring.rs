@@ -36,5 +36,5 @@ pub(crate) fn specimen() -> Specimen<Ring> {
         let (sin, cos) = (TAU * i as f64 / N as f64).sin_cos();
         [top[0] + radius * sin, top[1] - radius * (1.0 - cos)]
     };
-    Specimen::at_rest("ring", N, system, (0..N).flat_map(place).collect())
+    Specimen::at_rest("ring", N, l, system, (0..N).flat_map(place).collect())
 }

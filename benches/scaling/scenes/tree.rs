@@ -46,5 +46,5 @@ pub(crate) fn specimen() -> Specimen<Tree> {
         q.extend([x + l * middle.cos(), y + l * middle.sin()]);
         fans.push([middle, half]);
     }
-    Specimen::at_rest("tree", N, system, q)
+    Specimen::at_rest("tree", N, l, system, q)
 }
