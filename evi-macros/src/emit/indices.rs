@@ -14,7 +14,7 @@ pub(super) fn index_variable(level: usize) -> Ident {
 
 /// An affine expression of type `isize`.
 pub(super) fn integer(affine: &Affine) -> TokenStream {
-    let constant = Literal::i64_unsuffixed(affine.constant.abs());
+    let constant = Literal::isize_suffixed(affine.constant.unsigned_abs() as isize);
     let constant = if affine.constant < 0 { quote!(-#constant) } else { quote!(#constant) };
     let terms = affine.terms.iter().map(|(variable, coefficient)| {
         let value = match variable {
@@ -31,7 +31,8 @@ pub(super) fn integer(affine: &Affine) -> TokenStream {
         let sign = if *coefficient < 0 { quote!(-) } else { quote!(+) };
         if coefficient.abs() == 1 { quote!(#sign #value) } else { quote!(#sign #magnitude * #value) }
     });
-    quote!((#constant #(#terms)*) as isize)
+    // No cast: before `<` rustc would take it for generic arguments.
+    quote!((#constant #(#terms)*))
 }
 
 /// An affine expression of type `usize`, which is not negative.
