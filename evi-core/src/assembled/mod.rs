@@ -72,6 +72,7 @@ mod assembly;
 mod elements;
 mod error;
 mod failure;
+mod galerkin;
 mod gram;
 mod history;
 mod implicit;
@@ -91,6 +92,7 @@ mod system;
 
 use assembly::Point;
 pub use error::AssemblyError;
+pub use galerkin::AssembledGalerkin;
 pub use run::AssembledRun;
 pub use scene::PreparedScene;
 pub use scheme::{AssembledComposed, AssembledEvi, AssembledScheme, AssembledStep};
