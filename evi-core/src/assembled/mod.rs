@@ -89,6 +89,7 @@ mod sparse;
 mod start;
 mod state;
 mod system;
+mod writer;
 
 use assembly::Point;
 pub use error::AssemblyError;
@@ -99,3 +100,4 @@ pub use scheme::{AssembledComposed, AssembledEvi, AssembledScheme, AssembledStep
 pub use start::AssembledSimulation;
 pub use state::AssembledState;
 pub use system::{AssembledSystem, Family, FamilyVisitor};
+pub use writer::StateWriter;

@@ -1,7 +1,7 @@
 //! The end of a Galerkin step: on the constraints and on the hidden ones, to round-off.
 
 use super::super::assembly::{Point, subtract_pull};
-use super::super::scene::{Inertia, PreparedScene};
+use super::super::scene::{ConstantInertia, PreparedScene};
 use super::super::{AssembledState, failure};
 use super::AssembledGalerkin;
 use crate::integrator::{StepError, Tally};
@@ -19,7 +19,7 @@ impl<const K: usize> AssembledGalerkin<K> {
     ) -> Result<(), StepError> {
         let t = state.t + self.h;
         let PreparedScene { assembly, inertia, space, .. } = &mut *scene;
-        let Inertia::Constant(mass, gram) = inertia else {
+        let Some(ConstantInertia { mass, gram }) = inertia else {
             return Err(failure::singular(state.t, SingularMatrix { pivot_ratio: f64::NAN }));
         };
         let (tables, nodes) = (&self.nodes.tables, &self.nodes);

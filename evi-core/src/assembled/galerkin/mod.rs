@@ -5,7 +5,7 @@ mod landing;
 mod passes;
 
 use super::assembly::Point;
-use super::scene::{Inertia, PreparedScene};
+use super::scene::{ConstantInertia, PreparedScene};
 use super::{AssembledScheme, AssembledState, AssembledStep, AssemblyError};
 use crate::integrator::{Galerkin, IterationFailure, StepError, Symmetric as _, Tally};
 use crate::linear::largest_magnitude;
@@ -29,7 +29,7 @@ impl<const K: usize> AssembledScheme for Galerkin<K> {
 
     fn prepare(&self, scene: &mut PreparedScene) -> Result<AssembledGalerkin<K>, AssemblyError> {
         let h = checked_step_size(self.step_size())?;
-        let Inertia::Constant(_, gram) = &scene.inertia else {
+        let Some(ConstantInertia { gram, .. }) = &scene.inertia else {
             let requirement = "a constant mass matrix that couples the coordinates of one body only";
             return Err(SchemeError::UnsupportedStructure { scheme: "Galerkin", requirement }.into());
         };
@@ -105,7 +105,7 @@ fn set_acceleration(
     state: &AssembledState,
 ) -> Result<(), crate::linear::SingularMatrix> {
     let PreparedScene { assembly, inertia, space, .. } = scene;
-    let Inertia::Constant(mass, gram) = inertia else { return Ok(()) };
+    let Some(ConstantInertia { mass, gram }) = inertia else { return Ok(()) };
     let at = Point { t: state.t, q: &state.q, v: &state.v };
     assembly.force(at, &mut space.pull);
     mass.inverse_times::<f64, false>(&space.pull, &mut space.moved);

@@ -12,7 +12,7 @@ use super::super::AssembledState;
 use super::super::assembly::{Assembly, subtract_pull};
 use super::super::gram::GramPattern;
 use super::super::mass::ConstantMass;
-use super::super::scene::{Inertia, PreparedScene};
+use super::super::scene::{ConstantInertia, PreparedScene};
 use super::super::sparse::Symmetric;
 use crate::mechanics::product;
 use crate::newton::{NotConverged, Progress};
@@ -35,6 +35,8 @@ pub(super) struct NodeStorage {
     /// `aⱼ` and `Fⱼ` of the last passes, `j = 0 .. K−1`.
     pub(super) accelerations: Vec<Lanes>,
     pub(super) forces: Vec<Lanes>,
+    /// `∂L/∂q + f` of scenes in which it never changes.
+    uniform_force: Vec<f64>,
     velocities: Vec<Lanes>,
     displacements: Vec<Lanes>,
     multipliers: Vec<Lanes>,
@@ -62,6 +64,7 @@ impl NodeStorage {
             nearest: per_coordinate(),
             accelerations: per_coordinate(),
             forces: per_coordinate(),
+            uniform_force: assembly.force_at_origin(),
             velocities: per_coordinate(),
             displacements: per_coordinate(),
             multipliers: per_constraint(),
@@ -128,7 +131,7 @@ impl<const K: usize> LaneOperation for Passes<'_, K> {
     #[inline(always)]
     fn run<const FUSED: bool>(self) -> Self::Output {
         let PreparedScene { assembly, inertia, space, .. } = self.scene;
-        let Inertia::Constant(mass, gram) = inertia else {
+        let Some(ConstantInertia { mass, gram }) = inertia else {
             return Err(NotConverged { corrections: 0, last_correction: f64::NAN });
         };
         let scene = Scene { assembly, mass, pattern: &gram.pattern, instructions: self.instructions };
@@ -281,7 +284,13 @@ impl NodeStorage {
         } else {
             None
         };
-        assembly.lane_force(instructions, times, &self.positions, velocities, &mut self.forces);
+        if assembly.traits.has_uniform_force() {
+            for (force, &uniform) in self.forces.iter_mut().zip(&self.uniform_force) {
+                *force = Lanes::splat(uniform);
+            }
+        } else {
+            assembly.lane_force(instructions, times, &self.positions, velocities, &mut self.forces);
+        }
         if assembly.n_constraints == 0 {
             return;
         }
