@@ -32,7 +32,7 @@
 //!
 //! [`mod@array`], [`scalar`], [`memory`], [`system`] and [`scheme`] stand at the bottom; above them `newton` and [`linear`], then
 //! [`mechanics`] (energies, projections, the equations of one step), then [`integrator`] (one-step maps and runs),
-//! and beside the integrators [`baseline`], [`generic`], [`comparison`], [`report`] and [`watch`]. Imports point downwards.
+//! and beside the integrators `assembled` for scenes of many bodies, [`baseline`], [`generic`], [`comparison`], [`report`] and [`watch`]. Imports point downwards.
 //!
 //! # Features
 //!

@@ -68,6 +68,11 @@ impl Traits {
         constraints_are_on_t: false,
     };
 
+    /// Whether forces, those of the constraints aside, never change.
+    pub(super) const fn has_uniform_force(&self) -> bool {
+        !(self.force_is_on_q || self.force_is_on_v || self.force_is_on_t)
+    }
+
     fn and(self, element: &Structure) -> Self {
         let on = element.forces.on;
         Self {
@@ -147,6 +152,13 @@ impl Assembly {
         for family in self.families.iter().filter(|family| family.has_force()) {
             family.elements.add_force(at, force);
         }
+    }
+
+    /// `∂L/∂q + f` at rest at the origin: everywhere, where it is uniform.
+    pub(super) fn force_at_origin(&self) -> Vec<f64> {
+        let (zero, mut force) = (vec![0.0; self.n_coordinates], vec![0.0; self.n_coordinates]);
+        self.force(Point { t: 0.0, q: &zero, v: &zero }, &mut force);
+        force
     }
 
     /// Overwrites `φ(t, q)`.

@@ -172,11 +172,7 @@ impl<E: MechanicalSystem> Repeated<E> {
 impl<E: MechanicalSystem> Element<E> {
     #[inline(always)]
     fn gather<T: Scalar>(&self, of_scene: &[T]) -> E::PerCoordinate<T> {
-        let mut local = E::PerCoordinate::<T>::filled(T::from_f64(0.0));
-        for i in 0..E::N_COORDINATES {
-            local[i] = of_scene[self.places[i] as usize];
-        }
-        local
+        Array::from_fn(|i| of_scene[self.places[i] as usize])
     }
 
     #[inline(always)]
@@ -189,11 +185,7 @@ impl<E: MechanicalSystem> Element<E> {
 
     #[inline(always)]
     fn constants<T: Scalar>(&self) -> E::PerConstant<T> {
-        let mut constants = E::PerConstant::<T>::filled(T::from_f64(0.0));
-        for (constant, &value) in constants.as_mut().iter_mut().zip(self.constants.as_ref()) {
-            *constant = T::from_f64(value);
-        }
-        constants
+        Array::from_fn(|i| T::from_f64(self.constants[i]))
     }
 }
 

@@ -13,7 +13,7 @@ use super::gram::Gram;
 use super::history::History;
 use super::mass::ConstantMass;
 use super::nodes::Nodes;
-use super::scene::{Inertia, PreparedScene, Space};
+use super::scene::{ConstantInertia, PreparedScene, Space};
 use super::{AssembledState, failure};
 use crate::integrator::{IterationFailure, StepError, Tally};
 use crate::linear::{SingularMatrix, largest_magnitude};
@@ -46,7 +46,7 @@ impl KickedStep {
     /// `None` if the scene's steps on these nodes are not of this kind.
     pub(super) fn new(scene: &PreparedScene, nodes: &Nodes, h: f64) -> Option<Self> {
         let traits: &Traits = &scene.assembly.traits;
-        let Inertia::Constant(..) = scene.inertia else { return None };
+        scene.inertia.as_ref()?;
         let kicks = match (traits.force_is_on_q, traits.force_is_on_t) {
             _ if traits.force_is_on_v => return None,
             (false, false) => Kicks::Uniform,
@@ -67,7 +67,7 @@ impl KickedStep {
     ) -> Result<(), StepError> {
         let t_end = state.t + self.h;
         let PreparedScene { assembly, inertia, space, .. } = &mut *scene;
-        let Inertia::Constant(mass, gram) = inertia else {
+        let Some(ConstantInertia { mass, gram }) = inertia else {
             return Err(failure::singular(state.t, SingularMatrix { pivot_ratio: f64::NAN }));
         };
         self.begin(assembly, space, state);

@@ -5,7 +5,7 @@ use super::elements::SecondWeights;
 use super::gram::Gram;
 use super::mass::ConstantMass;
 use super::saddle::Saddle;
-use super::scene::{Inertia, PreparedScene, Space};
+use super::scene::{ConstantInertia, PreparedScene, Space};
 use crate::integrator::Tally;
 use crate::linear::{SingularMatrix, largest_magnitude};
 use crate::mechanics::{ProjectionError, relative};
@@ -22,14 +22,14 @@ impl PreparedScene {
     pub(super) fn project(&mut self, t: f64, tally: &mut impl Tally) -> Result<(), ProjectionError> {
         let Self { assembly, inertia, saddle, space } = self;
         match (inertia, saddle) {
-            (Inertia::Constant(mass, gram), _) => {
+            (Some(ConstantInertia { mass, gram }), _) => {
                 let pivot_ratio = gram.factor(mass, &space.at_end.slopes).map_err(|(_, matrix)| matrix)?;
                 tally.see_pivot_ratio(pivot_ratio);
                 project_on_constant_mass(assembly, mass, gram, space);
                 Ok(())
             }
-            (Inertia::Varying, Some(saddle)) => project_by_saddle(assembly, saddle, space, t, tally),
-            (Inertia::Varying, None) => Err(SingularMatrix { pivot_ratio: f64::NAN }.into()),
+            (None, Some(saddle)) => project_by_saddle(assembly, saddle, space, t, tally),
+            (None, None) => Err(SingularMatrix { pivot_ratio: f64::NAN }.into()),
         }
     }
 }

@@ -11,19 +11,17 @@ use crate::integrator::StepError;
 /// A scene, prepared for runs: its elements, the orders of its eliminations, and the storage of its steps. Stages of a composition share it.
 pub struct PreparedScene {
     pub(super) assembly: Assembly,
-    /// What determines momenta by velocities, and multipliers.
-    pub(super) inertia: Inertia,
+    /// Of scenes with a constant mass of small blocks; in others velocities and multipliers are found with the saddle-point matrix.
+    pub(super) inertia: Option<ConstantInertia>,
     /// Positions and multipliers together, where steps need it.
     pub(super) saddle: Option<Saddle>,
     pub(super) space: Space,
 }
 
-/// The mass matrix of a scene.
-pub(super) enum Inertia {
-    /// Constant and of small blocks: multipliers are found alone.
-    Constant(ConstantMass, Gram),
-    /// Any other: found with the saddle-point matrix.
-    Varying,
+/// A mass matrix that is constant and of small blocks: with it multipliers are found alone.
+pub(super) struct ConstantInertia {
+    pub(super) mass: ConstantMass,
+    pub(super) gram: Gram,
 }
 
 /// Storage of a step.
@@ -87,13 +85,13 @@ impl PreparedScene {
         let inertia = match ConstantMass::new(&assembly, &matrix) {
             Some(mass) => {
                 let gram = Gram::new(&assembly, &mass).map_err(refused)?;
-                Inertia::Constant(mass, gram)
+                Some(ConstantInertia { mass, gram })
             }
-            None => Inertia::Varying,
+            None => None,
         };
         let saddle = match inertia {
-            Inertia::Constant(..) => None,
-            Inertia::Varying => Some(Saddle::new(&assembly).map_err(refused)?),
+            Some(_) => None,
+            None => Some(Saddle::new(&assembly).map_err(refused)?),
         };
         Ok(Self { space: Space::of(&assembly), assembly, inertia, saddle })
     }

@@ -2,7 +2,7 @@
 
 use super::assembly::{ConstraintsAt, Point};
 use super::run::hidden_residuals;
-use super::scene::{Inertia, PreparedScene};
+use super::scene::{ConstantInertia, PreparedScene};
 use super::{AssembledRun, AssembledScheme, AssembledState, AssembledSystem, AssemblyError};
 use crate::mechanics::{CONSISTENCY, norm};
 
@@ -122,8 +122,7 @@ impl<S: AssembledSystem + Clone, F: AssembledScheme> AssembledSimulation<S, F> {
         v: &[f64],
     ) -> Result<(), AssemblyError> {
         let residuals = hidden_residuals(&scene.assembly, t, q, v);
-        // Written so that a NaN is refused.
-        match residuals.iter().position(|residual| !(*residual <= CONSISTENCY)) {
+        match residuals.iter().position(|&residual| residual > CONSISTENCY || residual.is_nan()) {
             None => Ok(()),
             Some(c) => Err(AssemblyError::InconsistentVelocity {
                 constraint: self.system.constraint_name(c),
@@ -143,7 +142,7 @@ impl<S: AssembledSystem + Clone, F: AssembledScheme> AssembledSimulation<S, F> {
     ) -> Result<AssembledState, AssemblyError> {
         let PreparedScene { assembly, inertia, space, .. } = &mut *scene;
         assembly.constraint_derivatives(t, &q, &mut space.at_end);
-        if let Inertia::Constant(mass, gram) = inertia {
+        if let Some(ConstantInertia { mass, gram }) = inertia {
             gram.factor(mass, &space.at_end.slopes).map_err(|(constraint, matrix)| {
                 let constraint = self.system.constraint_name(constraint);
                 AssemblyError::DependentConstraint { constraint, pivot_ratio: matrix.pivot_ratio }

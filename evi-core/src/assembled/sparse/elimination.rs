@@ -121,9 +121,4 @@ impl Elimination {
     pub(in super::super) fn n_below(&self) -> usize {
         self.rows.len()
     }
-
-    /// Products of one factorisation of a symmetric matrix.
-    pub(in super::super) fn n_products(&self) -> usize {
-        self.targets.len() + self.rows.len()
-    }
 }

@@ -1,4 +1,4 @@
-//! Scenes of point masses on rods: chains, rings, trees, nets, by the elements that today's derive makes.
+//! Assembled scenes of point masses on rods and springs: chains, rings, trees, nets.
 
 use evi_core::assembled::{AssembledSystem, Family, FamilyVisitor};
 use evi_core::prelude::*;
@@ -57,7 +57,9 @@ pub struct Spring {
 /// Point masses, joined by rods and springs. Mass `i` has the coordinates `2 i` and `2 i + 1`.
 #[derive(Clone, Debug, Default)]
 pub struct Truss {
+    /// One per mass.
     pub masses: Vec<f64>,
+    /// Gravitational acceleration.
     pub gravity: f64,
     /// Mass and length.
     pub hangers: Vec<(usize, f64)>,
@@ -161,7 +163,9 @@ impl AssembledSystem for Truss {
 
 /// A truss and where it starts, at rest.
 pub struct Placed {
+    /// The truss.
     pub truss: Truss,
+    /// Where it starts.
     pub q: Vec<f64>,
 }
 
