@@ -36,11 +36,13 @@ pub(crate) struct Range {
 impl Indexed {
     /// The ranges of a family, outermost first.
     pub(crate) fn ranges(&self) -> Vec<&Range> {
-        let range = |bracket| match bracket {
-            &Bracket::Each(ref range) => Some(range),
-            Bracket::At(_) => None,
-        };
-        self.brackets.iter().filter_map(range).collect()
+        let mut ranges = Vec::new();
+        for bracket in &self.brackets {
+            if let Bracket::Each(range) = bracket {
+                ranges.push(range);
+            }
+        }
+        ranges
     }
 
     pub(crate) fn span(&self) -> Span {

@@ -59,6 +59,15 @@ pub(super) fn rigid_body(
                     diagnostics.report(property.span(), format!("`{property}` is given twice"));
                 }
                 let tokens: TokenStream = value.iter().cloned().collect();
+                if let ([TokenTree::Group(group)], true) = (value, property != "mass")
+                    && group.delimiter() == Delimiter::Bracket
+                    && split_at_commas(group.stream()).len() != 3
+                {
+                    let message = format!("`{property}` has three elements, along the axes of the body");
+                    diagnostics.report(group.span(), message);
+                    is_mistaken = true;
+                    continue;
+                }
                 let parsed = Expression::parse(tokens.clone(), equals.span(), diagnostics);
                 is_mistaken |= parsed.is_none();
                 properties[index] = parsed.map(|_| tokens);
@@ -177,6 +186,8 @@ impl RigidBody {
             }
         }
         let index = Literal::usize_unsuffixed(index);
+        // At what the user wrote: that may be no vector.
+        let span = trees.first().map_or(span, TokenTree::span);
         Some(quote_spanned!(span=> (#tokens)[#index]))
     }
 

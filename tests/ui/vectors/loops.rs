@@ -8,14 +8,19 @@ const N: usize = 10;
 #[evi(
     coordinates(p: [N]),
     kinetic = sum(0..N, |i| der(p[i]).powi(2)),
-    potential = sum(0..N, |i| p[i]).powi(2) + { let all = sum(0..N, |i| p[i]); sum(0..N, |i| p[i] * all) } + p,
+    potential = sum(0..N, |i| p[i]).powi(2) + { let all = sum(0..N, |i| p[i]); sum(0..N, |i| p[i] * all) }
+        + sum(0..N, |i| p[i]) * sum(0..N, |i| p[i]),
     constraint(all: sum(0..N, |i| p[i]) == 0.0),
     input(u),
-    force(p: u),
+    force(p[0]: u * sum(0..N, |i| p[i])),
     frequency(p[0]: 1.0),
     observe(first: p[0]),
 )]
-struct Everything;
+struct NoLoop;
+
+#[derive(MechanicalSystem)]
+#[evi(coordinates(p: [N]), kinetic = sum(0..N, |i| der(p[i]).powi(2)), potential = p, force(p: 1.0))]
+struct Arrays;
 
 #[derive(MechanicalSystem)]
 #[evi(
@@ -35,5 +40,5 @@ struct Names;
 struct Bounds { l: [f64; N] }
 
 fn main() {
-    let _ = (Everything, Names, Bounds { l: [0.0; N] });
+    let _ = (NoLoop, Arrays, Names, Bounds { l: [0.0; N] });
 }

@@ -16,7 +16,8 @@ struct Points;
     rigid_body(a, mass = 1.0),
     rigid_body(b, mass = 1.0, centre = [0.0, 0.0, 1.0], inertia = [1.0, 1.0, 1.0]),
     rigid_body(mass = 1.0),
-    rigid_body(c, mass = 1.0, center = [0.0, 1.0, 2.0, 3.0], inertia = j),
+    rigid_body(c, mass = 1.0, center = [0.0, 1.0, 2.0, 3.0], inertia = [1.0, 1.0, 1.0]),
+    rigid_body(e, mass = 1.0, center = [0.0, 1.0, 2.0], inertia = j),
     rigid_body d,
     potential = 0.0,
 )]
