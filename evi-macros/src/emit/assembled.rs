@@ -7,7 +7,7 @@ use quote::{format_ident, quote};
 
 use super::generic_graph::generic_system;
 use super::implementation::mechanical_system;
-use super::indices::{self, index_variable, integer};
+use super::indices::{self, are_independent, index_variable, integer};
 use super::subject::Subject;
 use crate::expr::{Affine, Graph};
 use crate::model::{Assembled, Family, IndexRange, Place, coordinate_entries};
@@ -116,14 +116,9 @@ fn family(
     }
 }
 
-/// Whether the ends of every range are known without other indices: then there is a formula for the place of an element.
-fn are_independent(ranges: &[IndexRange]) -> bool {
-    ranges.iter().all(|range| range.from.levels().chain(range.to.levels()).next().is_none())
-}
-
 fn length(range: &IndexRange) -> TokenStream {
     let (from, to) = (integer(&range.from), integer(&range.to));
-    quote!(::core::cmp::Ord::max((#to) - (#from), 0))
+    quote!(::core::cmp::Ord::max(#to - #from, 0))
 }
 
 /// The number of values of all indices.
@@ -149,7 +144,7 @@ fn indices_of_element(ranges: &[IndexRange]) -> TokenStream {
         let lines = ranges.iter().zip(&variables).rev().map(|(range, variable)| {
             let (from, length) = (integer(&range.from), length(range));
             quote! {
-                let #variable = (#from) + rest % (#length);
+                let #variable = #from + rest % #length;
                 rest /= #length;
             }
         });
@@ -163,7 +158,7 @@ fn indices_of_element(ranges: &[IndexRange]) -> TokenStream {
         quote! {
             let length = #length;
             if rest < length {
-                break 'found (#(#before,)* (#from) + rest);
+                break 'found (#(#before,)* #from + rest);
             }
             rest -= length;
         },
@@ -181,7 +176,7 @@ fn indices_of_element(ranges: &[IndexRange]) -> TokenStream {
 fn nested(ranges: &[IndexRange], body: TokenStream) -> TokenStream {
     ranges.iter().rev().fold(body, |body, range| {
         let (variable, from, to) = (index_variable(range.level), integer(&range.from), integer(&range.to));
-        quote!(for #variable in (#from)..(#to) { #body })
+        quote!(for #variable in #from..#to { #body })
     })
 }
 

@@ -1,10 +1,10 @@
 //! Places in arrays as Rust: affine expressions over named sizes and open indices, and checks of their bounds.
 
 use proc_macro2::{Ident, Literal, TokenStream};
-use quote::{format_ident, quote, quote_spanned};
+use quote::{ToTokens, format_ident, quote, quote_spanned};
 
 use crate::expr::{Affine, Notation, Variable};
-use crate::model::{Bound, Parameter, ParameterSource};
+use crate::model::{Bound, IndexRange, Parameter, ParameterSource};
 use crate::syntax::Declaration;
 
 /// The variable of an index.
@@ -14,24 +14,22 @@ pub(super) fn index_variable(level: usize) -> Ident {
 
 /// An affine expression of type `isize`.
 pub(super) fn integer(affine: &Affine) -> TokenStream {
-    let constant = Literal::isize_suffixed(affine.constant.unsigned_abs() as isize);
+    let literal = |value: i64| Literal::isize_suffixed(isize::try_from(value).unwrap_or(isize::MAX));
+    let constant = literal(affine.constant.saturating_abs());
     let constant = if affine.constant < 0 { quote!(-#constant) } else { quote!(#constant) };
-    let terms = affine.terms.iter().map(|(variable, coefficient)| {
-        let value = match variable {
-            Variable::Index { level, .. } => {
-                let index = index_variable(*level);
-                quote!(#index)
-            }
+    let terms = affine.terms.iter().map(|(product, coefficient)| {
+        let sign = if *coefficient < 0 { quote!(-) } else { quote!(+) };
+        let magnitude = literal(coefficient.saturating_abs());
+        let factors = product.iter().map(|variable| match variable {
+            Variable::Index { level, .. } => index_variable(*level).to_token_stream(),
             Variable::Size(size) => {
                 let path = &size.path;
                 quote!((#path as isize))
             }
-        };
-        let magnitude = Literal::i64_unsuffixed(coefficient.abs());
-        let sign = if *coefficient < 0 { quote!(-) } else { quote!(+) };
-        if coefficient.abs() == 1 { quote!(#sign #value) } else { quote!(#sign #magnitude * #value) }
+        });
+        let product = factors.fold(quote!(#magnitude), |product, factor| quote!(#product * #factor));
+        quote!(#sign #product)
     });
-    // No cast: before `<` rustc would take it for generic arguments.
     quote!((#constant #(#terms)*))
 }
 
@@ -44,7 +42,7 @@ pub(super) fn size(affine: &Affine) -> TokenStream {
         }
         None => {
             let value = integer(affine);
-            quote!((#value) as usize)
+            quote!(#value as usize)
         }
     }
 }
@@ -66,7 +64,7 @@ pub(super) fn parameter(
         }
         ParameterSource::Index(index) => {
             let value = integer(index);
-            quote!((#value) as f64)
+            quote!(#value as f64)
         }
     }
 }
@@ -78,29 +76,70 @@ pub(super) fn bounds(bounds: &[Bound]) -> TokenStream {
 
 fn bound(bound: &Bound) -> Option<TokenStream> {
     let Bound { index, size, array, ranges, first, last } = bound;
-    let (mut smallest, mut largest) = (index.clone(), index.clone());
-    let mut is_empty = quote!(false);
-    // From the innermost range outwards: its ends may depend on the indices around it.
-    for range in ranges.iter().rev() {
-        let end = range.to.plus(-1, &Affine::number(1))?;
-        let extreme = |affine: &Affine, is_largest: bool| {
-            let at_end = (affine.coefficient(range.level) > 0) == is_largest;
-            affine.with_index(range.level, if at_end { &end } else { &range.from })
-        };
-        (smallest, largest) = (extreme(&smallest, false)?, extreme(&largest, true)?);
-        let is_outermost = range.from.levels().chain(range.to.levels()).next().is_none();
-        if is_outermost {
-            let (from, to) = (integer(&range.from), integer(&range.to));
-            is_empty = quote!(#is_empty || #from >= #to);
-        }
-    }
     let message = format!(
         "index {} is out of range: `{array}` has {} elements, from 0",
         index.print(Notation::Unicode),
         size.print(Notation::Unicode)
     );
-    let (smallest, largest, size) = (integer(&smallest), integer(&largest), integer(size));
     let message = quote_spanned!(*last=> #message);
-    let condition = quote!(#is_empty || (#smallest >= 0 && #largest < #size));
-    Some(quote_spanned!(*first=> const _: () = ::core::assert!(#condition, #message);))
+    let is_within = if are_independent(ranges) {
+        within_corners(index, size, ranges)?
+    } else {
+        within_everywhere(index, size, ranges)?
+    };
+    Some(quote_spanned!(*first=> const _: () = ::core::assert!(#is_within, #message);))
+}
+
+/// Whether the ends of every range are known without other indices.
+pub(super) fn are_independent(ranges: &[IndexRange]) -> bool {
+    ranges.iter().all(|range| range.from.levels().chain(range.to.levels()).next().is_none())
+}
+
+/// Affine expressions are largest and smallest at the corners of their ranges, if none of these is empty.
+fn within_corners(index: &Affine, size: &Affine, ranges: &[IndexRange]) -> Option<TokenStream> {
+    let mut corners = vec![index.clone()];
+    let mut is_empty = quote!(false);
+    for range in ranges {
+        let last = range.to.plus(-1, &Affine::number(1))?;
+        let ends = |corner: Affine| {
+            [corner.with_index(range.level, &range.from), corner.with_index(range.level, &last)]
+        };
+        corners = corners.into_iter().flat_map(ends).collect::<Option<_>>()?;
+        corners.sort();
+        corners.dedup();
+        let (from, to) = (integer(&range.from), integer(&range.to));
+        is_empty = quote!(#is_empty || #from >= #to);
+    }
+    let (corners, size) = (corners.iter().map(integer).collect::<Vec<_>>(), integer(size));
+    Some(quote!((#is_empty || (true #(&& 0 <= #corners && #corners < #size)*))))
+}
+
+/// Where ranges depend on the indices around them, all values of these are looked at.
+fn within_everywhere(index: &Affine, size: &Affine, ranges: &[IndexRange]) -> Option<TokenStream> {
+    let (innermost, outer) = ranges.split_last()?;
+    let last = innermost.to.plus(-1, &Affine::number(1))?;
+    let (at_first, at_last) =
+        (index.with_index(innermost.level, &innermost.from)?, index.with_index(innermost.level, &last)?);
+    let [at_first, at_last, size] = [&at_first, &at_last, size].map(integer);
+    let (from, to) = (integer(&innermost.from), integer(&innermost.to));
+    let looked_at = quote! {
+        if #from < #to && !(0 <= #at_first && #at_first < #size && 0 <= #at_last && #at_last < #size) {
+            is_within = false;
+        }
+    };
+    let looked_at = outer.iter().rev().fold(looked_at, |body, range| {
+        let (variable, from, to) = (index_variable(range.level), integer(&range.from), integer(&range.to));
+        quote! {
+            let mut #variable = #from;
+            while #variable < #to {
+                #body
+                #variable += 1;
+            }
+        }
+    });
+    Some(quote!({
+        let mut is_within = true;
+        #looked_at
+        is_within
+    }))
 }

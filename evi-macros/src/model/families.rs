@@ -5,6 +5,7 @@ use proc_macro2::Span;
 use super::resolve::Scope;
 use super::sizes::plain;
 use super::tables::{IndexRange, element_name};
+use crate::budget::MOST_UNROLLED_EQUATIONS;
 use crate::diagnostics::Diagnostics;
 use crate::expr::{Affine, ExprId, Graph, Value, View};
 use crate::syntax::{Bracket, Expansion, Indexed, Range, Resolver, lower_index, lower_range};
@@ -48,6 +49,14 @@ impl<'a> Scope<'a> {
         };
         let (from, to) = lower_range(range.ends.as_ref()?, graph, self, diagnostics)?;
         let is_loop = self.expansion() != Expansion::Unrolled;
+        if !is_loop && to.constant.saturating_sub(from.constant) > MOST_UNROLLED_EQUATIONS {
+            let message = format!(
+                "more than {MOST_UNROLLED_EQUATIONS} equations are written out only as loops: size an array of coordinates by a \
+                 constant, `coordinates(p: [N, 2])`"
+            );
+            diagnostics.report(range.index.span(), message);
+            return None;
+        }
         let values: Vec<Affine> = if is_loop {
             vec![self.enter_index(&range.index, &from, &to).1]
         } else {
@@ -157,12 +166,15 @@ impl<'a> Scope<'a> {
                 Ok(pairs)
             }
             (Some(Some(size)), Value::Vector(values)) => {
-                Err(format!("`{}` has {size} elements, this vector {}", view.name, values.len()))
+                let name = element_name(&view.name, &view.indices);
+                Err(format!("`{name}` has {size} elements, this vector {}", values.len()))
             }
-            (Some(Some(size)), _) => Err(format!(
-                "`{}` has {size} elements: write a vector of as many, or one of them, `{0}[0]`",
-                view.name
-            )),
+            (Some(Some(size)), _) => {
+                let name = element_name(&view.name, &view.indices);
+                Err(format!(
+                    "`{name}` has {size} elements: write a vector of as many, or one of them, `{name}[0]`"
+                ))
+            }
             (Some(None), _) => {
                 Err(format!("`{}` is an array: write `{0}[i in 0..N]` for all of its elements", view.name))
             }

@@ -60,7 +60,8 @@ fn operand(
             }
         }
         syn::Expr::Unary(syn::ExprUnary { op: syn::UnOp::Neg(_), expr, .. }) => {
-            Affine::default().plus(-1, &affine(expr, integer, diagnostics)?)
+            let negative = Affine::default().plus(-1, &affine(expr, integer, diagnostics)?);
+            negative.or_else(|| not_affine(expression, diagnostics))
         }
         syn::Expr::Paren(inner) => affine(&inner.expr, integer, diagnostics),
         syn::Expr::Group(inner) => affine(&inner.expr, integer, diagnostics),

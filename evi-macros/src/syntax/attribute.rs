@@ -5,6 +5,7 @@ use quote::ToTokens;
 
 use super::item::{Item, parse_items};
 use super::nesting;
+use super::rigid_body::spell_out;
 use super::shape::shape_of_type;
 use crate::diagnostics::Diagnostics;
 use crate::expr::Affine;
@@ -127,7 +128,7 @@ fn attribute_items(input: &syn::DeriveInput, diagnostics: &mut Diagnostics) -> V
             "the attribute is empty: write #[evi(coordinates(..), kinetic = .., potential = ..)]",
         );
     }
-    items
+    spell_out(items, diagnostics)
 }
 
 fn first_span(tokens: TokenStream, otherwise: Span) -> Span {

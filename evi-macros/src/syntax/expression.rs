@@ -84,6 +84,12 @@ impl Expression {
         self.syntax.root()
     }
 
+    /// Whether it is this number as a literal.
+    pub(super) fn is_number(&self, number: f64) -> bool {
+        matches!(self.root(), syn::Expr::Lit(syn::ExprLit { lit: syn::Lit::Float(literal), .. })
+            if literal.base10_parse::<f64>().is_ok_and(|value| value == number))
+    }
+
     /// Whether it has neither vectors nor indices.
     pub(crate) fn is_of_numbers(&self) -> bool {
         !has_vectors(&self.tokens)
@@ -379,6 +385,7 @@ impl<R: Resolver> Lowering<'_, R> {
                 (None, _) if VECTOR_FUNCTIONS.contains(&method.as_str()) => {
                     self.function_of_vectors(call, receiver, arguments)
                 }
+                (None, _) if method == "point" => self.point_of_body(call, receiver),
                 (None, _) => {
                     let known: Vec<&str> = functions().collect();
                     let similar = suggestion(&method, functions());
@@ -445,6 +452,10 @@ impl<R: Resolver> Lowering<'_, R> {
             syn::Expr::Index(index) => {
                 let array = self.derivative(der, &index.expr);
                 self.indexed(array, index)
+            }
+            syn::Expr::MethodCall(call) if call.method == "point" => {
+                let body = self.derivative(der, &call.receiver);
+                self.point_of_body(call, body)
             }
             syn::Expr::Call(_) => {
                 self.mistake(der, "a Lagrangian depends on positions and velocities: no second derivatives")

@@ -7,6 +7,7 @@ use proc_macro2::{Delimiter, Group, Ident, Span, TokenTree};
 use super::affine::{Integer, affine};
 use super::expression::Expression;
 use super::item::{identifier, split_at_commas};
+use crate::budget::MOST_UNROLLED_EQUATIONS;
 use crate::diagnostics::Diagnostics;
 
 /// A name with what stands in brackets behind it.
@@ -35,11 +36,13 @@ pub(crate) struct Range {
 impl Indexed {
     /// The ranges of a family, outermost first.
     pub(crate) fn ranges(&self) -> Vec<&Range> {
-        let range = |bracket| match bracket {
-            &Bracket::Each(ref range) => Some(range),
-            Bracket::At(_) => None,
-        };
-        self.brackets.iter().filter_map(range).collect()
+        let mut ranges = Vec::new();
+        for bracket in &self.brackets {
+            if let Bracket::Each(range) = bracket {
+                ranges.push(range);
+            }
+        }
+        ranges
     }
 
     pub(crate) fn span(&self) -> Span {
@@ -60,7 +63,8 @@ impl Range {
             affine(end, &mut unknown, &mut Diagnostics::default())?.as_number()
         };
         let behind = i64::from(matches!(limits, syn::RangeLimits::Closed(_)));
-        Some(number(start)?..number(end)?.checked_add(behind)?)
+        let range = number(start)?..number(end)?.checked_add(behind)?;
+        (range.end.checked_sub(range.start)? <= MOST_UNROLLED_EQUATIONS).then_some(range)
     }
 }
 

@@ -7,6 +7,7 @@ use proc_macro2::{Delimiter, Group, Ident, Punct, Spacing, Span, TokenStream, To
 use super::expression::Expression;
 use super::indexed::{Bracket, Indexed, brackets, leading_brackets};
 use super::labelled::{Form, Labelled, NameList, labelled, name_list};
+use super::rigid_body::{ItemOrBody, rigid_body};
 use super::shape::{Coordinate, array_of_coordinates};
 use crate::diagnostics::{Diagnostics, closest, suggestion};
 
@@ -66,7 +67,7 @@ pub(crate) struct Let {
 }
 
 /// The items, as the user writes them.
-const KEYWORDS: [&str; 11] = [
+const KEYWORDS: [&str; 12] = [
     "coordinates",
     "lagrangian",
     "kinetic",
@@ -77,6 +78,7 @@ const KEYWORDS: [&str; 11] = [
     "input",
     "frequency",
     "observe",
+    "rigid_body",
     "let",
 ];
 
@@ -100,7 +102,7 @@ const OBSERVE: Form = Form {
 };
 
 /// Parses the items between the parentheses of an attribute.
-pub(super) fn parse_items(tokens: TokenStream, diagnostics: &mut Diagnostics) -> Vec<Item> {
+pub(super) fn parse_items(tokens: TokenStream, diagnostics: &mut Diagnostics) -> Vec<ItemOrBody> {
     let mut items = Vec::new();
     for between_commas in split_at_commas(tokens) {
         let mut rest = between_commas.as_slice();
@@ -111,7 +113,14 @@ pub(super) fn parse_items(tokens: TokenStream, diagnostics: &mut Diagnostics) ->
                 diagnostics.report(rest[next].span(), message);
             }
             let (item, behind) = rest.split_at(next.unwrap_or(rest.len()));
-            items.extend(parse_item(item, diagnostics));
+            let is_body = matches!(item.first(), Some(TokenTree::Ident(keyword)) if keyword == "rigid_body");
+            match (is_body, item) {
+                (true, [TokenTree::Ident(keyword), rest @ ..]) => {
+                    let body = rigid_body(keyword, rest, diagnostics);
+                    items.push(body.map_or(ItemOrBody::Item(Item::Unknown), ItemOrBody::Body));
+                }
+                _ => items.extend(parse_item(item, diagnostics).map(ItemOrBody::Item)),
+            }
             rest = behind;
         }
     }
@@ -136,7 +145,7 @@ fn begins_item(before: &[TokenTree], tokens: &[TokenTree]) -> bool {
     let is_named = matches!(before.last(), Some(TokenTree::Ident(previous)) if previous == "let");
     match tokens {
         [TokenTree::Ident(keyword), TokenTree::Group(_), ..] => {
-            let lists = ["coordinates", "constraint", "force", "input", "frequency", "observe"];
+            let lists = ["coordinates", "constraint", "force", "input", "frequency", "observe", "rigid_body"];
             lists.iter().any(|list| keyword == list)
         }
         [TokenTree::Ident(keyword), TokenTree::Punct(equals), rest @ ..] => {

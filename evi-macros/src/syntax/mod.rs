@@ -11,6 +11,7 @@ mod integers;
 mod item;
 mod labelled;
 mod nesting;
+mod rigid_body;
 mod shape;
 mod spine;
 mod sums;

@@ -119,17 +119,23 @@ impl<R: Resolver> Lowering<'_, R> {
         let (from, to) = (self.index(start), self.index(end));
         let (from, mut to) = (from?, to?);
         if let syn::RangeLimits::Closed(_) = limits {
-            to = to.plus(1, &Affine::number(1))?;
+            match to.plus(1, &Affine::number(1)) {
+                Some(behind) => to = behind,
+                None => return self.unknown_range(range),
+            }
         }
-        let length = to.plus(-1, &from).and_then(|length| length.as_number());
-        match (length, self.resolver.expansion()) {
-            (Some(length), _) if length < 0 => self.mistake_over(range, "this range ends before it begins"),
-            (None, Expansion::Unrolled) => self.mistake_over(
+        let is_number = from.as_number().is_some() && to.as_number().is_some();
+        if !is_number && self.resolver.expansion() == Expansion::Unrolled {
+            return self.mistake_over(
                 range,
                 "a range that is not known here: where the coordinates have literal sizes, ranges end at literals, too; to \
                  keep loops, size an array of coordinates by the constant, `coordinates(p: [N, 2])`",
-            ),
-            _ => Some((from, to)),
+            );
+        }
+        match to.plus(-1, &from).map(|length| length.as_number()) {
+            Some(Some(length)) if length < 0 => self.mistake_over(range, "this range ends before it begins"),
+            Some(_) => Some((from, to)),
+            None => self.unknown_range(range),
         }
     }
 

@@ -12,6 +12,9 @@ use crate::expr::{Affine, Binary, Composite, Dependence, ExprId, Unary, Value, V
 /// The functions of vectors.
 pub(super) const VECTOR_FUNCTIONS: [&str; 4] = ["dot", "cross", "norm", "norm_squared"];
 
+/// Numbers of a place in space.
+const DIMENSIONS: usize = 3;
+
 impl<R: Resolver> Lowering<'_, R> {
     /// The number that `value` is; reports a vector.
     pub(super) fn number(&mut self, value: Value, place: &syn::Expr) -> Option<ExprId> {
@@ -204,6 +207,73 @@ impl<R: Resolver> Lowering<'_, R> {
         };
         let value = self.graph.composite(composite, Dependence::default());
         Some(Value::Scalar(if method == "norm_squared" { self.graph.power(value, 2) } else { value }))
+    }
+
+    /// `body.point([a, b, c])`, of positions or velocities: `body[0] + a body[1] + b body[2] + c body[3]`.
+    pub(super) fn point_of_body(&mut self, call: &syn::ExprMethodCall, body: Option<Value>) -> Option<Value> {
+        let place = match call.args.iter().collect::<Vec<_>>().as_slice() {
+            [syn::Expr::Array(array)] => {
+                array.elems.iter().map(|part| self.value(part)).collect::<Option<Vec<_>>>()
+            }
+            [place] => self.value(place).and_then(|place| self.parts(place, DIMENSIONS)),
+            _ => {
+                return self.mistake(
+                    call.method.span(),
+                    "`.point` takes a place in the frame of the body: `.point([a, b, c])`",
+                );
+            }
+        };
+        let (body, place) = (body?, place?);
+        let sizes = |view: &View| view.shape.iter().map(Affine::as_number).collect::<Vec<_>>();
+        let view = match body {
+            Value::Array(view) if sizes(&view) == [Some(4), Some(3)] => view,
+            _ => {
+                return self.mistake(
+                    call.method.span(),
+                    "`.point` is a function of bodies: `rigid_body(name, ..)`, `name.point([a, b, c])`",
+                );
+            }
+        };
+        if place.len() != DIMENSIONS {
+            let message = format!("a place in the frame of a body has 3 numbers, this has {}", place.len());
+            return self.mistake_over(&call.args, message);
+        }
+        let mut point = Value::Array(view.clone().at(Affine::number(0)));
+        for (director, number) in (1..).zip(place) {
+            let is_fixed = match self.known(number.clone()) {
+                Ok(Value::Scalar(number)) => self.graph.dependence(number).is_constant(),
+                _ => return self.mistake_over(&call.args, "a place in the frame of a body has 3 numbers"),
+            };
+            if !is_fixed {
+                return self.mistake_over(
+                    &call.args,
+                    "a point of a body does not move in its frame: its place is made of parameters",
+                );
+            }
+            let axis = Value::Array(view.clone().at(Affine::number(director)));
+            let part = self.combined(Binary::Mul, number, axis);
+            point = match part.and_then(|part| self.combined(Binary::Add, point, part)) {
+                Ok(point) => point,
+                Err(message) => return self.mistake(call.method.span(), message),
+            };
+        }
+        Some(point)
+    }
+
+    /// The elements of a vector.
+    fn parts(&mut self, vector: Value, length: usize) -> Option<Vec<Value>> {
+        match self.known(vector) {
+            Ok(Value::Vector(parts)) => Some(parts),
+            // As it is written, a vector is one expression.
+            Ok(Value::Scalar(vector)) if self.graph.is_as_written() => {
+                let part = |index| {
+                    let index = Affine::number(i64::try_from(index).unwrap_or(0));
+                    Value::Scalar(self.graph.composite(Composite::Part(vector, index), Dependence::default()))
+                };
+                Some((0..length).map(part).collect())
+            }
+            _ => Some(Vec::new()),
+        }
     }
 
     /// `left[index]`.

@@ -149,3 +149,18 @@ fn sums_vectors_and_indices_are_printed_as_written() {
     ];
     assert_eq!(found, expected);
 }
+
+#[test]
+fn a_rigid_body_is_printed_as_its_energy() {
+    let found = equations(
+        "#[evi(rigid_body(b, mass = m, center = [0.0, 0.0, l], inertia = [j, j, k]), potential = m * g * b.point([0.0, 0.0, l])[2])]
+         struct S { m: f64, l: f64, j: f64, k: f64, g: f64 }",
+    );
+    let printed = |index: usize| found[index][0].as_str();
+    assert_eq!(
+        printed(1),
+        "T = ½ m |ḃ₀ + l ḃ₃|² + ¼ (j + k − j) |ḃ₁|² + ¼ (k + j − j) |ḃ₂|² + ¼ (j + j − k) |ḃ₃|²"
+    );
+    assert_eq!(printed(2), "V = m g (b₀ + 0 b₁ + 0 b₂ + l b₃)[2]");
+    assert_eq!((printed(3), printed(6)), ("b_unit1: |b₁|² = 1", "b_right12: b₁ · b₂ = 0"));
+}

@@ -168,6 +168,40 @@ fn a_force_of_vectors_acts_on_its_elements() {
 }
 
 #[test]
+fn a_rigid_body_is_its_directors() {
+    check(
+        "#[evi(potential = m * g * b.point([0.0, l, c[2]])[1] + k * der(b.point([1.0, l, 0.0])).norm_squared(),
+              rigid_body(b, mass = m + 1.0, center = c, inertia = [1.0, j, 3.0]),
+              rigid_body(e, mass = m, center = [0.0, 0.5, 0], inertia = c))]
+         struct S { m: f64, g: f64, l: f64, k: f64, j: f64, c: [f64; 3] }",
+        "#[evi(coordinates(b: [12], e: [12]),
+              kinetic = 0.5 * (m + 1.0) * (
+                      (der(b[0]) + c[0] * der(b[3]) + c[1] * der(b[6]) + c[2] * der(b[9])).powi(2)
+                    + (der(b[1]) + c[0] * der(b[4]) + c[1] * der(b[7]) + c[2] * der(b[10])).powi(2)
+                    + (der(b[2]) + c[0] * der(b[5]) + c[1] * der(b[8]) + c[2] * der(b[11])).powi(2))
+                  + 0.25 * (j + 3.0 - 1.0) * (der(b[3]).powi(2) + der(b[4]).powi(2) + der(b[5]).powi(2))
+                  + 0.25 * (3.0 + 1.0 - j) * (der(b[6]).powi(2) + der(b[7]).powi(2) + der(b[8]).powi(2))
+                  + 0.25 * (1.0 + j - 3.0) * (der(b[9]).powi(2) + der(b[10]).powi(2) + der(b[11]).powi(2))
+                  + 0.5 * m * ((der(e[0]) + 0.5 * der(e[6])).powi(2) + (der(e[1]) + 0.5 * der(e[7])).powi(2)
+                    + (der(e[2]) + 0.5 * der(e[8])).powi(2))
+                  + 0.25 * (c[1] + c[2] - c[0]) * (der(e[3]).powi(2) + der(e[4]).powi(2) + der(e[5]).powi(2))
+                  + 0.25 * (c[2] + c[0] - c[1]) * (der(e[6]).powi(2) + der(e[7]).powi(2) + der(e[8]).powi(2))
+                  + 0.25 * (c[0] + c[1] - c[2]) * (der(e[9]).powi(2) + der(e[10]).powi(2) + der(e[11]).powi(2)),
+              potential = m * g * (b[1] + l * b[7] + c[2] * b[10]) + k * ((der(b[0]) + der(b[3]) + l * der(b[6])).powi(2)
+                  + (der(b[1]) + der(b[4]) + l * der(b[7])).powi(2) + (der(b[2]) + der(b[5]) + l * der(b[8])).powi(2)),
+              constraint(u1[k in 1..4]: b[3 * k] * b[3 * k] + b[3 * k + 1].powi(2) + b[3 * k + 2].powi(2) == 1.0),
+              constraint(r1: b[3] * b[6] + b[4] * b[7] + b[5] * b[8] == 0.0),
+              constraint(r2: b[3] * b[9] + b[4] * b[10] + b[5] * b[11] == 0.0),
+              constraint(r3: b[6] * b[9] + b[7] * b[10] + b[8] * b[11] == 0.0),
+              constraint(u2[k in 1..4]: e[3 * k] * e[3 * k] + e[3 * k + 1].powi(2) + e[3 * k + 2].powi(2) == 1.0),
+              constraint(s1: e[3] * e[6] + e[4] * e[7] + e[5] * e[8] == 0.0),
+              constraint(s2: e[3] * e[9] + e[4] * e[10] + e[5] * e[11] == 0.0),
+              constraint(s3: e[6] * e[9] + e[7] * e[10] + e[8] * e[11] == 0.0))]
+         struct S { m: f64, g: f64, l: f64, k: f64, j: f64, c: [f64; 3] }",
+    );
+}
+
+#[test]
 fn names_say_the_element() {
     let mut graph = Graph::default();
     let model = resolved(
