@@ -16,8 +16,9 @@ pub(crate) struct Specimen<S> {
     time: f64,
 }
 
-/// Step size as a share of the time on which a rod swings: the same difficulty for chains of all lengths.
+/// Step sizes as shares of the time on which a rod swings: the same difficulty for chains of all lengths.
 const STEP: f64 = 0.02;
+const GALERKIN_STEP: f64 = 0.1;
 
 /// A run of any scene by any method.
 pub(crate) trait Steps {
@@ -73,7 +74,7 @@ impl<S: AssembledSystem + Clone + 'static> Specimen<S> {
             self.row("midpoint", Evi::midpoint(h)),
             self.row("midpoint_4", Evi::midpoint(h).composed(Composition::suzuki_4())),
             self.row("midpoint_6", Evi::midpoint(h).composed(Composition::kahan_li_6())),
-            self.row("galerkin_8", Galerkin::<8>::new(10.0 * h)),
+            self.row("galerkin_8", Galerkin::<8>::new(GALERKIN_STEP * self.time)),
         ]
     }
 

@@ -9,7 +9,7 @@ use crate::specimen::Specimen;
 const M: usize = 20;
 const N: usize = 400;
 
-/// Mass `20 i + j` in row `i` and column `j`, z upwards.
+/// Mass `M i + j` in row `i` and column `j`, z upwards.
 #[derive(MechanicalSystem, Clone, Debug)]
 #[evi(
     coordinates(p: [N, 3]),
@@ -17,8 +17,8 @@ const N: usize = 400;
     potential = m * g * sum(0..N, |i| p[i][2]),
     constraint(near: (p[0] - [0.0, 0.0, hanger]).norm_squared() == hanger.powi(2)),
     constraint(far: (p[M - 1] - [0.0, width, rise + hanger]).norm_squared() == hanger.powi(2)),
-    constraint(along[i in 0..M, j in 1..M]: (p[20 * i + j] - p[20 * i + j - 1]).norm_squared() == l.powi(2)),
-    constraint(across[i in 1..M, j in 0..M]: (p[20 * i + j] - p[20 * i + j - 20]).norm_squared() == l.powi(2)),
+    constraint(along[i in 0..M, j in 1..M]: (p[M * i + j] - p[M * i + j - 1]).norm_squared() == l.powi(2)),
+    constraint(across[i in 1..M, j in 0..M]: (p[M * i + j] - p[M * i + j - M]).norm_squared() == l.powi(2)),
 )]
 pub(crate) struct Net {
     m: f64,
