@@ -46,13 +46,19 @@ pub(crate) struct Progress {
     /// Relative length of the last correction; 0 before the first.
     previous: f64,
     /// What it was of the one before, where convergence is linear.
+    #[cfg(feature = "std")]
     rate: f64,
 }
 
 impl Progress {
     /// The progress of an iteration that goes on after a correction of relative length `previous`.
     pub(crate) const fn after(previous: f64) -> Self {
-        Self { corrections: 0, previous, rate: 0.0 }
+        Self {
+            corrections: 0,
+            previous,
+            #[cfg(feature = "std")]
+            rate: 0.0,
+        }
     }
 
     /// Whether the iteration has converged with a correction of relative length `length`, which has been applied.
