@@ -71,7 +71,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     if let Some(out) = &out {
         let solutions = comparisons.iter().flat_map(|comparison| &comparison.solutions);
-        println!("\nwrote {}", files::replace(&out.join("time_to_solution.csv"), &files::csv(solutions))?.display());
+        println!(
+            "\nwrote {}",
+            files::replace(&out.join("time_to_solution.csv"), &files::csv(solutions))?.display()
+        );
     }
     Ok(())
 }

@@ -57,7 +57,12 @@ pub(crate) struct Cost {
 }
 
 /// Repetitions take turns, so that a slow moment of the machine hits all rows of a scene alike.
-pub(crate) fn costs(rows: &[Row], effort: Effort, bar: &ProgressBar, is_over: impl Fn() -> bool) -> Vec<Cost> {
+pub(crate) fn costs(
+    rows: &[Row],
+    effort: Effort,
+    bar: &ProgressBar,
+    is_over: impl Fn() -> bool,
+) -> Vec<Cost> {
     let mut costs = Vec::with_capacity(rows.len());
     let mut index = 0;
     for scene in rows.chunk_by(|a, b| (a.scene, a.bodies) == (b.scene, b.bodies)) {
@@ -68,7 +73,8 @@ pub(crate) fn costs(rows: &[Row], effort: Effort, bar: &ProgressBar, is_over: im
         let mut fastest = vec![Ok(f64::INFINITY); scene.len()];
         for _ in 0..effort.repetitions {
             for (row, fastest) in scene.iter().zip(&mut fastest) {
-                *fastest = std::mem::replace(fastest, Ok(0.0)).and_then(|best| Ok(best.min(time(row, effort)?)));
+                *fastest =
+                    std::mem::replace(fastest, Ok(0.0)).and_then(|best| Ok(best.min(time(row, effort)?)));
             }
         }
         for (row, fastest) in scene.iter().zip(fastest) {

@@ -59,7 +59,11 @@ fn compare<S: AssembledSystem + Clone + 'static>(
     let mut comparison = Comparison {
         title: format!(
             "Chain of {bodies} links from the horizontal to t = {t} s; errors against {}",
-            if certified.is_some() { "certified digits" } else { "galerkin_8 with 64 times the fewest steps" }
+            if certified.is_some() {
+                "certified digits"
+            } else {
+                "galerkin_8 with 64 times the fewest steps"
+            }
         ),
         solutions: Vec::new(),
         missing: Vec::new(),
@@ -70,8 +74,18 @@ fn compare<S: AssembledSystem + Clone + 'static>(
     };
     let members: [(&'static str, u64, u32, Box<dyn Fn(f64) -> Row + '_>); 4] = [
         ("midpoint", 16, 6, Box::new(|h| specimen.row("midpoint", Evi::midpoint(h)))),
-        ("midpoint_4", 4, 6, Box::new(|h| specimen.row("midpoint_4", Evi::midpoint(h).composed(Composition::suzuki_4())))),
-        ("midpoint_6", 4, 5, Box::new(|h| specimen.row("midpoint_6", Evi::midpoint(h).composed(Composition::kahan_li_6())))),
+        (
+            "midpoint_4",
+            4,
+            6,
+            Box::new(|h| specimen.row("midpoint_4", Evi::midpoint(h).composed(Composition::suzuki_4()))),
+        ),
+        (
+            "midpoint_6",
+            4,
+            5,
+            Box::new(|h| specimen.row("midpoint_6", Evi::midpoint(h).composed(Composition::kahan_li_6()))),
+        ),
         ("galerkin_8", 1, 5, Box::new(|h| specimen.row("galerkin_8", Galerkin::<8>::new(h)))),
     ];
     for (method, first, count, row) in &members {

@@ -1,6 +1,8 @@
 //! A scene of many bodies with its start, and the methods that take its steps.
 
-use evi_core::assembled::{AssembledRun, AssembledScheme, AssembledSimulation, AssembledStep, AssembledSystem};
+use evi_core::assembled::{
+    AssembledRun, AssembledScheme, AssembledSimulation, AssembledStep, AssembledSystem,
+};
 use evi_core::integrator::Statistics;
 use evi_core::prelude::*;
 
@@ -57,7 +59,14 @@ impl Row {
 
 impl<S: AssembledSystem + Clone + 'static> Specimen<S> {
     /// With rods of length `l`, from positions and velocities.
-    pub(crate) fn moving(scene: &'static str, bodies: usize, l: f64, system: S, q: Vec<f64>, v: Vec<f64>) -> Self {
+    pub(crate) fn moving(
+        scene: &'static str,
+        bodies: usize,
+        l: f64,
+        system: S,
+        q: Vec<f64>,
+        v: Vec<f64>,
+    ) -> Self {
         Self { scene, bodies, system, q, v, time: (l / evi_examples::GRAVITY).sqrt() }
     }
 

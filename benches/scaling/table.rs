@@ -7,7 +7,17 @@ use crate::solution::Solution;
 pub(crate) fn of_costs(costs: &[Cost]) -> String {
     let mut table = format!(
         "{:<10} {:>7} {:<11} {:>12} {:>9} {:>6} {:>14} {:>9} {:>6} {:>7} {:>9}\n",
-        "scene", "bodies", "method", "ns/step", "ns/body", "/20", "instructions", "/body", "/20", "Newton", "|φ|"
+        "scene",
+        "bodies",
+        "method",
+        "ns/step",
+        "ns/body",
+        "/20",
+        "instructions",
+        "/body",
+        "/20",
+        "Newton",
+        "|φ|"
     );
     let mut scene = ("", 0);
     for cost in costs {
@@ -19,8 +29,9 @@ pub(crate) fn of_costs(costs: &[Cost]) -> String {
             table.push_str(&format!("{:<10} {:>7} {:<11} {failure}\n", cost.scene, cost.bodies, cost.method));
             continue;
         }
-        let of_twenty =
-            costs.iter().find(|other| other.bodies == 20 && (other.scene, other.method) == (cost.scene, cost.method));
+        let of_twenty = costs
+            .iter()
+            .find(|other| other.bodies == 20 && (other.scene, other.method) == (cost.scene, cost.method));
         let instructions = |cost: &Cost| Some(cost.instructions_per_step? / cost.bodies as f64);
         let ratio = |quantity: &dyn Fn(&Cost) -> Option<f64>| Some(quantity(cost)? / quantity(of_twenty?)?);
         table.push_str(&format!(

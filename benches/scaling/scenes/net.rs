@@ -42,6 +42,7 @@ pub(crate) fn specimen() -> Specimen<Net> {
         [SPACING * row as f64, SPACING * column as f64, height]
     };
     let (l, hanger) = (SPACING.hypot(RISE), 0.2);
-    let system = Net { m: 1.0 / N as f64, l, hanger, width: SPACING * (M - 1) as f64, rise: RISE, g: GRAVITY };
+    let system =
+        Net { m: 1.0 / N as f64, l, hanger, width: SPACING * (M - 1) as f64, rise: RISE, g: GRAVITY };
     Specimen::at_rest("net", N, l, system, (0..N).flat_map(place).collect())
 }
