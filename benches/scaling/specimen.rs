@@ -20,7 +20,7 @@ pub(crate) struct Specimen<S> {
 
 /// Step sizes as shares of the time on which a rod swings: the same difficulty for chains of all lengths.
 const STEP: f64 = 0.02;
-const GALERKIN_STEP: f64 = 0.1;
+const GALERKIN_STEP: f64 = 0.05;
 
 /// A run of any scene by any method.
 pub(crate) trait Steps {
