@@ -13,7 +13,7 @@ use crate::schedule::{Operations, Programs};
 const LARGEST_KERNEL: usize = 50_000;
 /// Coordinates in arrays of literal sizes whose sums and families are written out term by term: what the straight-line eliminations and a state on
 /// the stack bear. Larger scenes stay loops over their elements.
-pub(crate) const MOST_UNROLLED_COORDINATES: usize = 128;
+pub(crate) const MOST_UNROLLED_COORDINATES: usize = 96;
 /// Equations of one index of a family that is written out: more than any solver here takes in one piece.
 pub(crate) const MOST_UNROLLED_EQUATIONS: i64 = 1_000;
 /// Contributions that a message lists.

@@ -51,12 +51,12 @@ fn expand_loops(declaration: &syntax::Declaration, mut diagnostics: Diagnostics)
         return emit::assembled_fallback(declaration, &diagnostics);
     };
     let mut programs = Vec::new();
-    for family in &assembled.families {
-        let equations = mechanics::differentiate_equations(&mut graph, &family.model);
+    for element in &assembled.elements {
+        let equations = mechanics::differentiate_equations(&mut graph, element);
         let structure = structure::analyze(&graph, &equations);
-        structure.check_gradients(&family.model, &mut diagnostics);
+        structure.check_gradients(element, &mut diagnostics);
         programs.push(schedule::schedule(&graph, &equations, structure));
-        budget::check(&graph, &family.model, &programs[programs.len() - 1], &mut diagnostics);
+        budget::check(&graph, element, &programs[programs.len() - 1], &mut diagnostics);
     }
     graph.verify();
     if !diagnostics.is_empty() {

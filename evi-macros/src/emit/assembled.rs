@@ -6,11 +6,11 @@ use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
 use super::generic_graph::generic_system;
-use super::implementation::mechanical_system;
+use super::implementation::{Solvers, mechanical_system};
 use super::indices::{self, are_independent, index_variable, integer};
-use super::subject::Subject;
+use super::subject::{Subject, element_name};
 use crate::expr::{Affine, Graph};
-use crate::model::{Assembled, Family, IndexRange, Place, coordinate_entries};
+use crate::model::{Assembled, Family, IndexRange, Model, Place, coordinate_entries};
 use crate::schedule::Programs;
 use crate::syntax::{Coordinate, Declaration};
 
@@ -23,9 +23,16 @@ pub(crate) fn assembled(
 ) -> TokenStream {
     let struct_name = &declaration.name;
     let bounds = indices::bounds(&assembled.bounds);
-    let families: Vec<TokenStream> = std::iter::zip(&assembled.families, programs)
+    let elements = std::iter::zip(&assembled.elements, programs)
         .enumerate()
-        .map(|(number, (family, programs))| self::family(declaration, number, family, graph, programs))
+        .map(|(number, (model, programs))| element(declaration, number, model, graph, programs));
+    let families: Vec<TokenStream> = assembled
+        .families
+        .iter()
+        .enumerate()
+        .map(|(number, family)| {
+            self::family(declaration, number, family, &assembled.elements[family.element])
+        })
         .collect();
     let names: Vec<Ident> = (0..families.len()).map(family_name).collect();
     let n_coordinates = sum(coordinate_entries(declaration).iter().map(count));
@@ -35,10 +42,11 @@ pub(crate) fn assembled(
     quote! {
         const _: () = {
             #bounds
+            #(#elements)*
             #(#families)*
 
             #[automatically_derived]
-            #[allow(unused, clippy::all)]
+            #[allow(unused, trivial_numeric_casts, clippy::all)]
             impl ::evi_core::__private::AssembledSystem for #struct_name {
                 fn n_coordinates(&self) -> usize {
                     #n_coordinates
@@ -61,21 +69,33 @@ fn family_name(number: usize) -> Ident {
     format_ident!("Family{number}")
 }
 
-/// The element of a family, and the family.
-fn family(
+/// An element as a scene of its own. It never steps by itself: no elimination is written for it.
+fn element(
     declaration: &Declaration,
     number: usize,
-    family: &Family,
+    model: &Model,
     graph: &Graph,
     programs: &Programs,
 ) -> TokenStream {
-    let Family { ranges, model, places } = family;
     let subject = Subject::of_element(number, declaration, model);
     let generic = generic_system(&subject, model, graph);
-    let element = mechanical_system(&subject, model, graph, programs, &[], &generic);
-    let (element_name, family_name) = (&subject.name, family_name(number));
-    let struct_name = &declaration.name;
+    let implementation = mechanical_system(&subject, model, graph, programs, &[], Solvers::Dense, &generic);
+    let name = &subject.name;
     let n_parameters = model.parameters.len();
+    quote! {
+        #[allow(missing_docs, missing_debug_implementations, unreachable_pub)]
+        pub struct #name {
+            p: [f64; #n_parameters],
+        }
+        #implementation
+    }
+}
+
+/// Where the copies of an element lie, and their parameters.
+fn family(declaration: &Declaration, number: usize, family: &Family, model: &Model) -> TokenStream {
+    let Family { ranges, element, places, .. } = family;
+    let (element_name, family_name) = (element_name(*element), family_name(number));
+    let struct_name = &declaration.name;
     let values =
         model.parameters.iter().map(|parameter| indices::parameter(declaration, &quote!(system), parameter));
     let places = places.iter().map(|place| flat(declaration, place));
@@ -83,16 +103,10 @@ fn family(
     let count = number_of_elements(ranges);
     quote! {
         #[allow(missing_docs, missing_debug_implementations, unreachable_pub)]
-        pub struct #element_name {
-            p: [f64; #n_parameters],
-        }
-        #element
-
-        #[allow(missing_docs, missing_debug_implementations, unreachable_pub)]
         pub struct #family_name;
 
         #[automatically_derived]
-        #[allow(unused, clippy::all)]
+        #[allow(unused, trivial_numeric_casts, clippy::all)]
         impl ::evi_core::__private::Family<#struct_name> for #family_name {
             type Element = #element_name;
 
@@ -240,12 +254,12 @@ fn element_text(name: &str, shape: &[Affine]) -> TokenStream {
 
 /// `AssembledSystem::constraint_name`: `link[7]`, with the indices of the family.
 fn constraint_name(families: &[Family]) -> TokenStream {
-    let constrained = families.iter().filter(|family| !family.model.constraints.is_empty());
-    let entries = constrained.map(|Family { ranges, model, .. }| {
-        let (count, n_constraints) = (number_of_elements(ranges), model.constraints.len());
+    let constrained = families.iter().filter(|family| !family.constraints.is_empty());
+    let entries = constrained.map(|Family { ranges, constraints, .. }| {
+        let (count, n_constraints) = (number_of_elements(ranges), constraints.len());
         let indices = indices_of_element(ranges);
         let variables: Vec<Ident> = ranges.iter().map(|range| index_variable(range.level)).collect();
-        let texts = model.constraints.iter().map(|constraint| family_text(&constraint.name, &variables));
+        let texts = constraints.iter().map(|name| family_text(name, &variables));
         let rows = 0..n_constraints;
         quote! {
             let count = #count * #n_constraints;
@@ -283,7 +297,7 @@ fn family_text(name: &str, variables: &[Ident]) -> TokenStream {
 /// `GenericSystem` as loops over the generic copies of the elements.
 fn generic(struct_name: &Ident, families: &[Ident], n_coordinates: &TokenStream) -> TokenStream {
     quote! {
-        #[allow(unused, clippy::all)]
+        #[allow(unused, trivial_numeric_casts, clippy::all)]
         #[automatically_derived]
         impl ::evi_core::__private::GenericSystem for #struct_name {
             const HAS_DISSIPATION: bool = false #(|| <<#families as ::evi_core::__private::Family<#struct_name>>::Element

@@ -8,7 +8,7 @@ use super::forces;
 use super::generic::generic_system;
 use super::kernel::Writer;
 use super::report::{report, source};
-use super::storage::{Sizes, associated_types};
+use super::storage::{Sizes, associated_types, dense_solvers};
 use super::subject::Subject;
 use super::{generic_graph, indices};
 use crate::expr::{Dependence, ExprId, Graph};
@@ -33,7 +33,17 @@ pub(crate) fn implementation(
         None => generic_graph::generic_system(&subject, model, graph),
     };
     let bounds = indices::bounds(&model.bounds);
-    mechanical_system(&subject, model, graph, programs, written, &quote!(#generic_system #bounds))
+    let others = quote!(#generic_system #bounds);
+    mechanical_system(&subject, model, graph, programs, written, Solvers::Own, &others)
+}
+
+/// Which linear solvers a scene has.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Solvers {
+    /// Eliminations for its own patterns.
+    Own,
+    /// Dense ones, which are compiled only where they are used.
+    Dense,
 }
 
 /// The implementation of `MechanicalSystem` for a struct, with what else belongs to it.
@@ -43,6 +53,7 @@ pub(super) fn mechanical_system(
     graph: &Graph,
     programs: &Programs,
     written: &[WrittenEquation],
+    solvers: Solvers,
     others: &TokenStream,
 ) -> TokenStream {
     let struct_name = &subject.name;
@@ -60,7 +71,10 @@ pub(super) fn mechanical_system(
         n_force_entries: programs.structure.force_entries.len(),
     };
     let types = associated_types(&sizes);
-    let (solver_types, solvers) = solvers(&sizes, &programs.structure);
+    let (solver_types, solvers) = match solvers {
+        Solvers::Own => own_solvers(&sizes, &programs.structure),
+        Solvers::Dense => (TokenStream::new(), dense_solvers(sizes.n_coordinates, sizes.n_constraints)),
+    };
     let parameters = &subject.values;
     let kernels = Kernels { graph, model, slots: &programs.slots };
     let frequencies = forces::frequencies(struct_name, &kernels, programs);
@@ -111,7 +125,7 @@ pub(super) fn mechanical_system(
 }
 
 /// The scene's own eliminations, as types and as the associated types that name them.
-fn solvers(sizes: &Sizes, structure: &Structure) -> (TokenStream, TokenStream) {
+fn own_solvers(sizes: &Sizes, structure: &Structure) -> (TokenStream, TokenStream) {
     let (n, m) = (sizes.n_coordinates, sizes.n_constraints);
     let (kkt_type, kkt) = solver("KktElimination", n + m, structure.kkt_elimination(n, m));
     let (mass_type, mass) = solver("MassElimination", n, structure.mass_elimination(n));

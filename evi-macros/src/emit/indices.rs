@@ -87,7 +87,10 @@ fn bound(bound: &Bound) -> Option<TokenStream> {
     } else {
         within_everywhere(index, size, ranges)?
     };
-    Some(quote_spanned!(*first=> const _: () = ::core::assert!(#is_within, #message);))
+    Some(quote_spanned! {*first=>
+        #[allow(trivial_numeric_casts, clippy::all)]
+        const _: () = ::core::assert!(#is_within, #message);
+    })
 }
 
 /// Whether the ends of every range are known without other indices.

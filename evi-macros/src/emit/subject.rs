@@ -27,12 +27,17 @@ impl Subject {
         }
     }
 
-    /// The element of family number `family`, which holds its parameters in an array.
-    pub(super) fn of_element(family: usize, declaration: &Declaration, model: &Model) -> Self {
+    /// An element by its number, which holds its parameters in an array.
+    pub(super) fn of_element(number: usize, declaration: &Declaration, model: &Model) -> Self {
         Self {
-            name: format_ident!("Element{family}"),
+            name: element_name(number),
             parameters: model.parameters.iter().map(|parameter| parameter.name(declaration)).collect(),
             values: (0..model.parameters.len()).map(|index| quote!(self.p[#index])).collect(),
         }
     }
+}
+
+/// The name of an element.
+pub(super) fn element_name(number: usize) -> Ident {
+    format_ident!("Element{number}")
 }

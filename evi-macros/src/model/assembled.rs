@@ -18,6 +18,8 @@ use crate::syntax::{Declaration, Expansion};
 
 /// A scene as a sum of families.
 pub(crate) struct Assembled {
+    /// The elements that are different, each a scene in coordinates of its own.
+    pub(crate) elements: Vec<Model>,
     pub(crate) families: Vec<Family>,
     /// Indices that rustc checks.
     pub(crate) bounds: Vec<Bound>,
@@ -27,10 +29,12 @@ pub(crate) struct Assembled {
 pub(crate) struct Family {
     /// The indices, outermost first; none for a single element.
     pub(crate) ranges: Vec<IndexRange>,
-    /// The element in coordinates of its own.
-    pub(crate) model: Model,
+    /// Which of the elements.
+    pub(crate) element: usize,
     /// Where each coordinate of the element lies.
     pub(crate) places: Vec<Place>,
+    /// The names of its constraints.
+    pub(crate) constraints: Vec<String>,
 }
 
 /// What a family is made of so far, in the coordinates of the scene.
@@ -84,12 +88,36 @@ pub(crate) fn resolve_assembled(
     }
     let named_constants = scope.named_constants();
     let tables = scope.tables;
-    let mut element = |(ranges, parts): (Vec<IndexRange>, Parts)| {
+    let mut assembled = Assembled { elements: Vec::new(), families: Vec::new(), bounds: Vec::new() };
+    for (ranges, parts) in families {
         let (model, places) = element(declaration, parts, &found, &tables, &named_constants, graph);
-        Family { ranges, model, places }
+        let constraints = model.constraints.iter().map(|constraint| constraint.name.clone()).collect();
+        // Branches of a tree differ in their places alone.
+        let known = assembled.elements.iter().position(|known| are_equal(known, &model));
+        let element = known.unwrap_or_else(|| {
+            assembled.elements.push(model);
+            assembled.elements.len() - 1
+        });
+        assembled.families.push(Family { ranges, element, places, constraints });
+    }
+    assembled.bounds = tables.bounds;
+    Some(assembled)
+}
+
+/// Whether two elements have the same equations in the same parameters: equal expressions are one node.
+fn are_equal(a: &Model, b: &Model) -> bool {
+    let roots = |model: &Model| -> Vec<ExprId> {
+        let constraints = model.constraints.iter().map(|constraint| constraint.root);
+        let dissipation = model.forces.dissipation.iter().map(|(_, root)| *root);
+        let forces = model.forces.generalized.iter().map(|(_, force)| force.root);
+        std::iter::once(model.lagrangian).chain(constraints).chain(dissipation).chain(forces).collect()
     };
-    let families = families.into_iter().map(&mut element).collect();
-    Some(Assembled { families, bounds: tables.bounds })
+    let shape = |model: &Model| {
+        let forced: Vec<usize> = model.forces.generalized.iter().map(|(coordinate, _)| *coordinate).collect();
+        let (n, has_dissipation) = (model.coordinates.len(), model.forces.dissipation.is_some());
+        (n, model.constraints.len(), has_dissipation, forced)
+    };
+    shape(a) == shape(b) && roots(a) == roots(b)
 }
 
 /// Reports items that a sum of elements does not have.

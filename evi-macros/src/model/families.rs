@@ -7,7 +7,7 @@ use super::sizes::plain;
 use super::tables::{IndexRange, element_name};
 use crate::budget::MOST_UNROLLED_EQUATIONS;
 use crate::diagnostics::Diagnostics;
-use crate::expr::{Affine, ExprId, Graph, Value, View};
+use crate::expr::{Affine, ExprId, Graph, Notation, Value, View};
 use crate::syntax::{Bracket, Expansion, Indexed, Range, Resolver, lower_index, lower_range};
 
 /// An equation with its name, once or for every value of its indices.
@@ -182,6 +182,17 @@ impl<'a> Scope<'a> {
                 Err(format!("`{}` is a number, this is a vector", element_name(&view.name, &view.indices)))
             }
         }
+    }
+
+    /// `link[i in 1..N]`, or the name itself: for the text of equations.
+    pub(super) fn name_with_ranges(&self, indexed: &Indexed, indices: &[Affine]) -> String {
+        let print = |index: &Affine| index.print(Notation::Unicode);
+        let ranges = std::iter::zip(indices, self.ranges()).map(|(index, range)| {
+            format!("{} in {}..{}", print(index), print(&range.from), print(&range.to))
+        });
+        let ranges: Vec<String> = ranges.collect();
+        let name = plain(&indexed.name);
+        if ranges.is_empty() { name } else { format!("{name}[{}]", ranges.join(", ")) }
     }
 
     /// The numbers of a value with the names that they have: `name`, or `name[indices, element]`.

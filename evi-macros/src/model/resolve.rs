@@ -78,6 +78,12 @@ impl<'a> Scope<'a> {
         self.entries
     }
 
+    /// The ranges of the open indices that are not written out.
+    pub(super) fn ranges(&self) -> &[IndexRange] {
+        &self.ranges
+    }
+
+    /// Those of them that an equation is repeated over.
     pub(super) fn open_ranges(&self) -> Vec<IndexRange> {
         if self.expansion == Expansion::Looped { self.ranges.clone() } else { Vec::new() }
     }
@@ -200,7 +206,14 @@ impl<'a> Scope<'a> {
             let mut side = |side: &Option<Expression>| lower(side.as_ref()?, graph, scope, diagnostics);
             let (left, right) = (side(&constraint.left), side(&constraint.right));
             match residual(graph, left?, right?) {
-                Ok(residual) => found.extend(scope.named(indexed, indices, &residual)),
+                Ok(residual) => {
+                    let mut named = scope.named(indexed, indices, &residual);
+                    if scope.expansion == Expansion::Written {
+                        let name = scope.name_with_ranges(indexed, indices);
+                        named.iter_mut().for_each(|constraint| constraint.name.clone_from(&name));
+                    }
+                    found.extend(named);
+                }
                 Err(message) => diagnostics.report(indexed.span(), message),
             }
             Some(())

@@ -3,8 +3,8 @@
 use proc_macro2::{TokenStream, TokenTree};
 
 use crate::diagnostics::Diagnostics;
-use crate::expr::{Graph, Notation};
-use crate::model::{Assembled, resolve_assembled};
+use crate::expr::{Affine, Graph, Notation};
+use crate::model::{Assembled, Family, Place, coordinate_entries, resolve_assembled};
 use crate::pipeline::expand;
 use crate::syntax;
 
@@ -20,7 +20,8 @@ fn chain(n: &str) -> String {
     )
 }
 
-fn resolved(source: &str) -> Assembled {
+/// The families, and the names of the arrays of coordinates.
+fn resolved(source: &str) -> (Assembled, Vec<String>) {
     let mut diagnostics = Diagnostics::default();
     let Ok(declaration) = syntax::parse(source.parse().expect("tokens"), &mut diagnostics) else {
         panic!("a test's struct is a struct: {source}");
@@ -28,19 +29,25 @@ fn resolved(source: &str) -> Assembled {
     let assembled = resolve_assembled(&declaration, &mut Graph::default(), &mut diagnostics);
     let mistakes: Vec<&str> = diagnostics.mistakes().iter().map(|mistake| mistake.message.as_str()).collect();
     assert!(mistakes.is_empty(), "{mistakes:?} in {source}");
-    assembled.expect("a struct without mistakes is a sum of families")
+    let names = coordinate_entries(&declaration).iter().map(|entry| entry.name.to_string()).collect();
+    (assembled.expect("a struct without mistakes is a sum of families"), names)
 }
 
 /// Ranges, coordinates and constraints of every family.
 fn families(source: &str) -> Vec<String> {
-    let assembled = resolved(source);
-    let family = |family: &crate::model::Family| {
-        let range = |range: &crate::model::IndexRange| {
-            format!("{}..{} ", range.from.print(Notation::Unicode), range.to.print(Notation::Unicode))
-        };
-        let ranges: String = family.ranges.iter().map(range).collect();
-        let constraints = family.model.constraints.iter().map(|constraint| format!("; {}", constraint.name));
-        format!("{ranges}({}){}", family.model.coordinates.join(", "), constraints.collect::<String>())
+    let (assembled, names) = resolved(source);
+    let print = |index: &Affine| index.print(Notation::Unicode);
+    let place = |place: &Place| {
+        let indices: Vec<String> = place.indices.iter().map(print).collect();
+        let name = &names[place.array];
+        if indices.is_empty() { name.clone() } else { format!("{name}[{}]", indices.join(", ")) }
+    };
+    let family = |family: &Family| {
+        let ranges =
+            family.ranges.iter().map(|range| format!("{}..{} ", print(&range.from), print(&range.to)));
+        let places: Vec<String> = family.places.iter().map(place).collect();
+        let constraints = family.constraints.iter().map(|name| format!("; {name}"));
+        format!("{}({}){}", ranges.collect::<String>(), places.join(", "), constraints.collect::<String>())
     };
     assembled.families.iter().map(family).collect()
 }
@@ -72,14 +79,13 @@ fn terms_are_distributed_over_their_sums() {
 
 #[test]
 fn trees_and_rings_are_several_families() {
-    let found = families(
-        "#[evi(coordinates(p: [2 * N + 1, 2]),
+    let source = "#[evi(coordinates(p: [2 * N + 1, 2]),
               lagrangian = sum(0..2 * N + 1, |i| der(p[i]).norm_squared()),
-              constraint(left[i in 0..N]: (p[2 * i + 1] - p[i]).norm_squared() == 1.0),
-              constraint(right[i in 0..N]: (p[2 * i + 2] - p[i]).norm_squared() == 1.0),
+              constraint(left[i in 0..N]: (p[2 * i + 1] - p[i]).norm_squared() == l),
+              constraint(right[i in 0..N]: (p[2 * i + 2] - p[i]).norm_squared() == l),
               constraint(closing: p[2 * N] == p[N]))]
-         struct S;",
-    );
+         struct S { l: f64 }";
+    let found = families(source);
     let expected = [
         "0..2 N + 1 (p[i, 0], p[i, 1])",
         "0..N (p[i, 0], p[i, 1], p[2 i + 1, 0], p[2 i + 1, 1]); left",
@@ -87,6 +93,9 @@ fn trees_and_rings_are_several_families() {
         "(p[N, 0], p[N, 1], p[2 N, 0], p[2 N, 1]); closing[0]; closing[1]",
     ];
     assert_eq!(found, expected);
+    // Both branches of a body are one element.
+    let elements: Vec<usize> = resolved(source).0.families.iter().map(|family| family.element).collect();
+    assert_eq!(elements, [0, 1, 1, 2]);
 }
 
 fn size(tokens: TokenStream) -> usize {

@@ -144,7 +144,7 @@ fn sums_vectors_and_indices_are_printed_as_written() {
         ["f_p[i, 0] = Σ_{j=0}^{i−1} (p[j, 0] − x)", "f_{p_{i,0}} = \\sum_{j=0}^{i-1} (p_{j,0} - x)"],
         ["tip = p₂", "\\mathrm{tip} = p_{2}"],
         ["gap = p₂ − (x, 1)", "\\mathrm{gap} = p_{2} - (x, 1)"],
-        ["link[i]: |pᵢ − pᵢ₋₁|² = l²", "\\left|p_{i} - p_{i-1}\\right|^2 = l^2"],
+        ["link[i in 1..3]: |pᵢ − pᵢ₋₁|² = l²", "\\left|p_{i} - p_{i-1}\\right|^2 = l^2"],
         ["weld: r = b", "r = b"],
     ];
     assert_eq!(found, expected);
