@@ -277,6 +277,12 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
         Ok((solution.difference, [lost_q, lost_p]))
     }
 
+    /// The action of a step.
+    #[cfg(feature = "std")]
+    pub(crate) const fn action(&self) -> &DiscreteLagrangian<S, F::Table<K>, K> {
+        &self.action
+    }
+
     /// How far the frequency of every coordinate is from where steps lose their meaning.
     ///
     /// ```
