@@ -2,7 +2,7 @@
 
 use evi_core::prelude::*;
 use evi_core::sensitivity::{Course, Differentiable, Differentiate, Direction, ParameterChoice, StateGradient};
-use evi_examples::{DoublePendulum, KapitzaPendulum, Start};
+use evi_examples::{DoublePendulum, HenonHeiles, KapitzaPendulum, Start};
 use evi_tests::Random;
 use evi_tests::scenes::{
     ChargedSphericalPendulum, DoublePendulumInAngles, MotorisedDoublePendulum, PushedDumbbell, RelativisticBead,
@@ -215,6 +215,12 @@ fn double_pendulum<F>(scheme: F) -> Case<DoublePendulum, F, 4> {
     Case { system: angles.constrained(), scheme, start, fields: fields!(DoublePendulum: m1 m2 l1 l2 g) }
 }
 
+fn motorised<F>(scheme: F) -> Case<MotorisedDoublePendulum, F, 2> {
+    let (system, start) = (MotorisedDoublePendulum::STANDARD, DoublePendulumInAngles::MODERATE);
+    let fields = fields!(MotorisedDoublePendulum: m1 m2 l1 l2 g inner outer torque w);
+    Case { system, scheme, start, fields }
+}
+
 const H: f64 = 0.05;
 
 #[test]
@@ -234,14 +240,39 @@ fn stages_of_a_composition() {
 
 #[test]
 fn mass_that_depends_on_the_configuration_with_forces_that_are_not_symmetric() {
-    let Start { q, v } = DoublePendulumInAngles::MODERATE;
-    Case {
-        system: MotorisedDoublePendulum::STANDARD,
-        scheme: Evi::simpson(H),
-        start: Start { q, v },
-        fields: fields!(MotorisedDoublePendulum: m1 m2 l1 l2 g inner outer torque w),
-    }
-    .check();
+    motorised(Evi::simpson(H)).check();
+}
+
+#[test]
+fn inner_points_on_constraints() {
+    double_pendulum(Galerkin::<3>::new(H)).check();
+}
+
+#[test]
+fn inner_points_with_a_mass_that_depends_on_the_configuration_and_forces() {
+    motorised(Galerkin::<2>::new(H)).check();
+}
+
+#[test]
+fn gauss_nodes() {
+    motorised(Gauss::<3>::new(H)).check();
+}
+
+#[test]
+fn kicks_of_a_potential_at_the_ends() {
+    let Start { q, v } = HenonHeiles::STANDARD.regular();
+    let fields = fields!(HenonHeiles: coupling);
+    let scheme = Evi::trapezoid(0.2);
+    Case { system: HenonHeiles::STANDARD, scheme, start: Start { q, v }, fields }.check();
+}
+
+#[test]
+fn a_quadratic_part_integrated_exactly() {
+    let hanging = [0.0, -0.9, 0.0, -2.0];
+    let fields = Vec::new();
+    Case { fields, ..double_pendulum(Evi::trapezoid(H).linearised_at(hanging)) }.check();
+    let fields = Vec::new();
+    Case { fields, ..double_pendulum(Evi::simpson(H).linearised_at(hanging)) }.check();
 }
 
 #[test]

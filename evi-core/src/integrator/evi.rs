@@ -283,6 +283,24 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
         &self.action
     }
 
+    /// The Legendre transform of a constant mass matrix.
+    #[cfg(feature = "std")]
+    pub(crate) const fn legendre(&self) -> Option<&ConstantLegendre<S>> {
+        self.legendre.as_ref()
+    }
+
+    /// The step of a quadratic Lagrangian, if the steps are such.
+    #[cfg(feature = "std")]
+    pub(crate) const fn folded(&self) -> Option<&MultiplierStep<S, FoldedStep<S, F>>> {
+        if FoldedStep::<S, F>::EXISTS { self.folded.as_ref() } else { None }
+    }
+
+    /// The step of a potential that acts at the ends alone, if the steps are such.
+    #[cfg(feature = "std")]
+    pub(crate) const fn leapfrog(&self) -> Option<&MultiplierStep<S, LeapfrogStep<S>>> {
+        if Self::MAY_LEAP { self.leapfrog.as_ref() } else { None }
+    }
+
     /// How far the frequency of every coordinate is from where steps lose their meaning.
     ///
     /// ```

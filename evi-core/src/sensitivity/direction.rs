@@ -89,17 +89,18 @@ impl<S: MechanicalSystem> Direction<S> {
         mechanics: &Mechanics<S>,
         state: &State<S>,
     ) -> Result<StateTangent<S>, DerivativeError> {
-        let landing = Landing::new(mechanics, state)?;
+        let landing = Landing::new(mechanics, None, state)?;
         let constants = moving_constants(system, &self.parameters);
+        let moving = (&constants, self.moves_parameters());
         let mut q = self.q.clone();
         let none = S::PerCoordinate::<f64>::from_fn(|_| 0.0);
         let Moved { mut v, mut p } = match &self.motion {
-            Motion::Velocity(v) => landing.start(&constants, &mut q, v),
-            Motion::Momentum(_) => landing.start(&constants, &mut q, &none),
+            Motion::Velocity(v) => landing.start(moving, &mut q, v),
+            Motion::Momentum(_) => landing.start(moving, &mut q, &none),
         };
         if let Motion::Momentum(arriving) = &self.motion {
             let unmoved = Array::from_fn(|_| 0.0);
-            Moved { v, p } = landing.forward(&constants, &unmoved, &q, arriving);
+            Moved { v, p } = landing.forward(moving, &unmoved, &q, arriving);
         }
         let parameters_move = self.moves_parameters();
         let tangent = StateTangent { q, v, p, inputs: self.inputs.clone(), constants, parameters_move };

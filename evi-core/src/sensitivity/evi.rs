@@ -1,12 +1,14 @@
 //! Derivatives of exponential variational integrators.
 
 use super::landing::Landing;
-use super::nodes::{NodeAction, PerPoint, StepDerivative, TakenStep, momentum};
+use super::kicks::{note_kicks, pull_over_kicks, push_over_kicks};
+use super::nodes::{NodeAction, OnNodes};
+use super::points::{PerPoint, PointAction, StepDerivative, TakenStep};
 use super::{Backwards, DerivativeError, Differentiable, StateGradient, StateTangent};
 use crate::array::Array;
 use crate::integrator::{EviStep, OneStep, Tally};
 use crate::linear::Kkt;
-use crate::mechanics::{DiscreteLagrangian, ImplicitStep, Mechanics, State, StepStart};
+use crate::mechanics::{ConstantLegendre, DiscreteLagrangian, ImplicitStep, Mechanics, State, StepStart};
 use crate::scheme::{Interpolant, InterpolationTable, interpolate};
 use crate::system::MechanicalSystem;
 
@@ -90,31 +92,37 @@ impl<S: MechanicalSystem> Matrix<S> {
     }
 }
 
-/// The step from `start` to `end`, with the impulse of the constraints at its start.
+/// The step from `start` to `end`, with the impulses of the constraints at both.
 pub(super) fn noted<S: MechanicalSystem>(
-    action: &impl NodeAction<S, 1>,
+    action: &impl PointAction<S, 1>,
+    legendre: Option<&ConstantLegendre<S>>,
     start: State<S>,
     end: &State<S>,
 ) -> Result<TakenStep<S, 1>, DerivativeError> {
     let differences = [Array::from_fn(|i| end.q[i] - start.q[i])];
     let mut impulses = [Array::from_fn(|_| 0.0)];
+    let mut removed = Array::from_fn(|_| 0.0);
     if S::N_CONSTRAINTS > 0 {
-        let departing = momentum(action, &start, &differences, 0);
+        let [departing, arriving] = action.end_momenta(&start, &differences);
         let balance = Array::from_fn(|i| start.p[i] + departing[i]);
-        impulses = [Landing::new(action.mechanics(), &start)?.impulse(&balance)];
+        impulses = [Landing::new(action.scene(), legendre, &start)?.impulse(&balance)];
+        let balance = Array::from_fn(|i| arriving[i] - end.p[i]);
+        removed = Landing::new(action.scene(), legendre, end)?.impulse(&balance);
     }
-    Ok(TakenStep { start, end: end.clone(), differences, impulses })
+    Ok(TakenStep { start, end: end.clone(), differences, impulses, removed })
 }
 
 /// Moves vectors over a step whose points are its ends.
-pub(super) fn push_forward<S: MechanicalSystem, A: NodeAction<S, 1> + ImplicitStep<S>>(
-    action: &A,
+pub(super) fn push_forward<S: MechanicalSystem, E: ImplicitStep<S>>(
+    equations: &E,
+    action: &impl PointAction<S, 1>,
+    legendre: Option<&ConstantLegendre<S>>,
     taken: &TakenStep<S, 1>,
     tangents: &mut [StateTangent<S>],
 ) -> Result<(), DerivativeError> {
-    let kkt = Matrix::new(action, taken).forward(&ImplicitStep::mechanics(action).constants);
-    let factors = A::factor(kkt).map_err(|matrix| DerivativeError::Singular { t: taken.start.t, matrix })?;
-    let derivative = StepDerivative::new(action, taken)?;
+    let kkt = Matrix::new(equations, taken).forward(&action.scene().constants);
+    let factors = E::factor(kkt).map_err(|matrix| DerivativeError::Singular { t: taken.start.t, matrix })?;
+    let derivative = StepDerivative::new(action, legendre, taken)?;
     for tangent in tangents {
         derivative.push_forward(tangent, |[rows]| factors.solve(rows));
     }
@@ -122,15 +130,17 @@ pub(super) fn push_forward<S: MechanicalSystem, A: NodeAction<S, 1> + ImplicitSt
 }
 
 /// Moves a gradient back over a step whose points are its ends.
-pub(super) fn pull_back<S: MechanicalSystem, A: NodeAction<S, 1> + ImplicitStep<S>>(
-    action: &A,
+pub(super) fn pull_back<S: MechanicalSystem, E: ImplicitStep<S>>(
+    equations: &E,
+    action: &impl PointAction<S, 1>,
+    legendre: Option<&ConstantLegendre<S>>,
     taken: &TakenStep<S, 1>,
     Backwards(seeds): &Backwards<'_, S>,
     gradient: &mut StateGradient<S>,
 ) -> Result<(), DerivativeError> {
-    let kkt = Matrix::new(action, taken).backward(&ImplicitStep::mechanics(action).constants);
-    let factors = A::factor(kkt).map_err(|matrix| DerivativeError::Singular { t: taken.start.t, matrix })?;
-    StepDerivative::new(action, taken)?.pull_back(seeds, gradient, |[rows]| factors.solve(rows));
+    let kkt = Matrix::new(equations, taken).backward(&action.scene().constants);
+    let factors = E::factor(kkt).map_err(|matrix| DerivativeError::Singular { t: taken.start.t, matrix })?;
+    StepDerivative::new(action, legendre, taken)?.pull_back(seeds, gradient, |[rows]| factors.solve(rows));
     Ok(())
 }
 
@@ -156,7 +166,14 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> Differentiable<S> f
     ) -> Result<TakenStep<S, 1>, DerivativeError> {
         let mut end = state.clone();
         self.advance(&mut end, tally)?;
-        let taken = noted(self.action(), state.clone(), &end)?;
+        let start = state.clone();
+        let taken = if let Some(folded) = self.folded() {
+            note_kicks(folded, OneStep::mechanics(self), start, &end)?
+        } else if let Some(leapfrog) = self.leapfrog() {
+            note_kicks(leapfrog, OneStep::mechanics(self), start, &end)?
+        } else {
+            noted(&OnNodes(self.action()), self.legendre(), start, &end)?
+        };
         *state = end;
         Ok(taken)
     }
@@ -167,7 +184,14 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> Differentiable<S> f
         taken: &TakenStep<S, 1>,
         tangents: &mut [StateTangent<S>],
     ) -> Result<(), DerivativeError> {
-        push_forward(self.action(), taken, tangents)
+        let (action, mechanics) = (self.action(), OneStep::mechanics(self));
+        if let Some(folded) = self.folded() {
+            push_over_kicks(folded.free(), mechanics, Some(&OnNodes(action)), taken, tangents)
+        } else if let Some(leapfrog) = self.leapfrog() {
+            push_over_kicks(leapfrog.free(), mechanics, Some(&OnNodes(action)), taken, tangents)
+        } else {
+            push_forward(action, &OnNodes(action), self.legendre(), taken, tangents)
+        }
     }
 
     fn pull_back(
@@ -177,6 +201,13 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> Differentiable<S> f
         backwards: &Backwards<'_, S>,
         gradient: &mut StateGradient<S>,
     ) -> Result<(), DerivativeError> {
-        pull_back(self.action(), taken, backwards, gradient)
+        let (action, mechanics) = (self.action(), OneStep::mechanics(self));
+        if let Some(folded) = self.folded() {
+            pull_over_kicks(folded.free(), mechanics, Some(&OnNodes(action)), taken, backwards, gradient)
+        } else if let Some(leapfrog) = self.leapfrog() {
+            pull_over_kicks(leapfrog.free(), mechanics, Some(&OnNodes(action)), taken, backwards, gradient)
+        } else {
+            pull_back(action, &OnNodes(action), self.legendre(), taken, backwards, gradient)
+        }
     }
 }

@@ -120,8 +120,8 @@ impl<S: MechanicalSystem, F: Scheme<S, Step: Differentiable<S>>> Simulation<S, F
         if !course.parameters.is_empty() {
             run.map().check_parameters()?;
         }
-        let seeds = Seeds::new(self.system(), run.mechanics(), &course.parameters);
         let start = run.state().clone();
+        let seeds = Seeds::new(self.system(), run.mechanics(), &course.parameters, &start);
         let mut sweep = Sweep {
             workspace: run.map().workspace(),
             gradient: StateGradient::zero(seeds.n_parameters),
@@ -133,7 +133,7 @@ impl<S: MechanicalSystem, F: Scheme<S, Step: Differentiable<S>>> Simulation<S, F
             seeds: &seeds,
         };
         let mut gradient = sweep.there_and_back()?;
-        let landing = Landing::new(sweep.run.mechanics(), &start)?;
+        let landing = Landing::new(sweep.run.mechanics(), None, &start)?;
         landing.back_to_start(&seeds, &mut gradient.start);
         if gradient.start.is_finite() { Ok(gradient) } else { Err(DerivativeError::NotFinite { t: start.t }) }
     }

@@ -10,19 +10,26 @@ use super::evaluation::{ConstraintRates, moving, still};
 use super::parameters::{MovingConstants, Seeds};
 use super::{DerivativeError, StateGradient};
 use crate::array::Array;
-use crate::linear::{FactoredKkt, Kkt, constraint_index, unknowns};
-use crate::mechanics::{Mechanics, State};
+use crate::linear::{FactoredKkt, Factorization, Kkt, constraint_index, unknowns};
+use crate::mechanics::{ConstantLegendre, Mechanics, State};
 use crate::scalar::{Rate, Tangent};
-use crate::system::MechanicalSystem;
+use crate::system::{Entry, MechanicalSystem};
 
-/// A state with the factors of `[M Gᵀ; G 0]` there.
+/// A state with what solves `[M Gᵀ; G 0] (x, y) = (a, b)` there.
 pub(super) struct Landing<'a, S: MechanicalSystem> {
     state: &'a State<S>,
-    mass: S::PerHessianEntry<f64>,
+    /// Entries of the Hessian that vary, where the mass matrix is not constant.
+    mass: Option<S::PerHessianEntry<f64>>,
     /// Entries of `G` that vary.
     jacobian: S::PerJacobianEntry<f64>,
-    factors: FactoredKkt<S>,
-    constants: &'a S::PerConstant<f64>,
+    solver: Solver<'a, S>,
+    mechanics: &'a Mechanics<S>,
+}
+
+enum Solver<'a, S: MechanicalSystem> {
+    Kkt(FactoredKkt<S>),
+    /// By `G M⁻¹ Gᵀ`, as the steps of a constant mass do it.
+    Gram { legendre: &'a ConstantLegendre<S>, factors: S::GramFactors },
 }
 
 /// The changes of velocity and momentum.
@@ -35,13 +42,30 @@ impl<'a, S: MechanicalSystem> Landing<'a, S> {
     /// Whether the momentum depends on the configuration at a fixed velocity.
     const MOMENTUM_MOVES: bool = !S::STRUCTURE.hessian.vq.is_empty();
 
-    pub(super) fn new(mechanics: &'a Mechanics<S>, state: &'a State<S>) -> Result<Self, DerivativeError> {
+    pub(super) fn new(
+        mechanics: &'a Mechanics<S>,
+        legendre: Option<&'a ConstantLegendre<S>>,
+        state: &'a State<S>,
+    ) -> Result<Self, DerivativeError> {
         let constants = &mechanics.constants;
-        let (_, mass) = S::lagrangian_derivatives(constants, state.t, &state.q, &state.v);
+        let singular = |matrix| DerivativeError::Singular { t: state.t, matrix };
         let (_, jacobian) = S::constraint_derivatives(constants, state.t, &state.q);
+        if ConstantLegendre::<S>::EXISTS
+            && let Some(legendre) = legendre
+        {
+            let factors = legendre.factor_gram(mechanics, &jacobian, &mut ()).map_err(singular)?;
+            let solver = Solver::Gram { legendre, factors };
+            return Ok(Self { state, mass: None, jacobian, solver, mechanics });
+        }
+        let (_, mass) = S::lagrangian_derivatives(constants, state.t, &state.q, &state.v);
         let kkt: Kkt<S> = mechanics.mass_kkt(mass.as_ref(), jacobian.as_ref());
-        let factors = kkt.factor().map_err(|matrix| DerivativeError::Singular { t: state.t, matrix })?;
-        Ok(Self { state, mass, jacobian, factors, constants })
+        let solver = Solver::Kkt(kkt.factor().map_err(singular)?);
+        Ok(Self { state, mass: Some(mass), jacobian, solver, mechanics })
+    }
+
+    /// Entries of `G` that vary.
+    pub(super) const fn jacobian(&self) -> &S::PerJacobianEntry<f64> {
+        &self.jacobian
     }
 
     /// The impulse `x` with `Gᵀ x = momentum`, which exists.
@@ -53,21 +77,46 @@ impl<'a, S: MechanicalSystem> Landing<'a, S> {
     }
 
     /// The solution of `[M Gᵀ; G 0] (x, y) = (a, b)`.
+    #[inline]
     fn split(
         &self,
-        a: impl FnMut(usize) -> f64,
-        b: impl FnMut(usize) -> f64,
+        mut a: impl FnMut(usize) -> f64,
+        mut b: impl FnMut(usize) -> f64,
     ) -> (S::PerCoordinate<f64>, S::PerConstraint<f64>) {
-        let mut solution = unknowns::<S>(a, b);
-        self.factors.solve(&mut solution);
-        let y = Array::from_fn(|c| solution[constraint_index::<S>(c)]);
-        (Array::from_fn(|i| solution[i]), y)
+        match &self.solver {
+            Solver::Kkt(factors) => {
+                let mut solution = unknowns::<S>(a, b);
+                factors.solve(&mut solution);
+                let y = Array::from_fn(|c| solution[constraint_index::<S>(c)]);
+                (Array::from_fn(|i| solution[i]), y)
+            }
+            Solver::Gram { legendre, factors } => {
+                let mut momentum = S::PerCoordinate::<f64>::from_fn(&mut a);
+                if S::N_CONSTRAINTS == 0 {
+                    return (legendre.inverse_mass().times(|i| momentum[i]), Array::from_fn(b));
+                }
+                let free = legendre.inverse_mass().times(|i| momentum[i]);
+                let mut y = S::PerConstraint::<f64>::from_fn(|c| -b(c));
+                for entry in S::STRUCTURE.jacobian.q {
+                    y[entry.row] += self.slope(entry) * free[entry.col];
+                }
+                factors.solve(&mut y);
+                self.subtract_pull(&y, &mut momentum);
+                (legendre.inverse_mass().times(|i| momentum[i]), y)
+            }
+        }
+    }
+
+    #[inline]
+    fn slope(&self, entry: &Entry) -> f64 {
+        entry.value(self.mechanics.constants.as_ref(), self.jacobian.as_ref())
     }
 
     /// Adds `M x`.
     fn add_inertia(&self, x: &S::PerCoordinate<f64>, sum: &mut S::PerCoordinate<f64>) {
+        let varying = self.mass.as_ref().map_or(&[][..], AsRef::as_ref);
         for entry in S::STRUCTURE.hessian.vv {
-            let value = entry.value(self.constants.as_ref(), self.mass.as_ref());
+            let value = entry.value(self.mechanics.constants.as_ref(), varying);
             sum[entry.row] += value * x[entry.col];
             if entry.row != entry.col {
                 sum[entry.col] += value * x[entry.row];
@@ -76,7 +125,15 @@ impl<'a, S: MechanicalSystem> Landing<'a, S> {
     }
 
     /// The rate of `∂L/∂v` at a fixed velocity.
-    fn momentum_rate(&self, constants: &MovingConstants<S>, q: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
+    fn momentum_rate(
+        &self,
+        constants: &MovingConstants<S>,
+        parameters_move: bool,
+        q: &S::PerCoordinate<f64>,
+    ) -> S::PerCoordinate<f64> {
+        if !(Self::MOMENTUM_MOVES || parameters_move) {
+            return Array::from_fn(|_| 0.0);
+        }
         let (q, v) = (moving::<S>(&self.state.q, q), still::<S, f64>(&self.state.v));
         let momentum = S::lagrangian_gradient(constants, Tangent::still(self.state.t), &q, &v).momentum;
         Array::from_fn(|i| momentum[i].rate)
@@ -94,12 +151,12 @@ impl<'a, S: MechanicalSystem> Landing<'a, S> {
     /// How velocity and momentum follow changes of the configuration, of the constants, and of the momentum `p⁻`, of which `impulse` was removed.
     pub(super) fn forward(
         &self,
-        constants: &MovingConstants<S>,
+        (constants, parameters_move): (&MovingConstants<S>, bool),
         impulse: &S::PerConstraint<f64>,
         q: &S::PerCoordinate<f64>,
         arriving: &S::PerCoordinate<f64>,
     ) -> Moved<S> {
-        let mut p = self.momentum_rate(constants, q);
+        let mut p = self.momentum_rate(constants, parameters_move, q);
         let mut rows = S::PerCoordinate::<f64>::from_fn(|i| arriving[i] - p[i]);
         let mut leaving = S::PerConstraint::<f64>::from_fn(|_| 0.0);
         if S::N_CONSTRAINTS > 0 {
@@ -116,7 +173,7 @@ impl<'a, S: MechanicalSystem> Landing<'a, S> {
     /// projected on the constraints.
     pub(super) fn start(
         &self,
-        constants: &MovingConstants<S>,
+        (constants, parameters_move): (&MovingConstants<S>, bool),
         q: &mut S::PerCoordinate<f64>,
         v: &S::PerCoordinate<f64>,
     ) -> Moved<S> {
@@ -129,13 +186,12 @@ impl<'a, S: MechanicalSystem> Landing<'a, S> {
             }
             leaving = self.constraint_rates(constants, 0.0, q).velocity_rate(&self.state.v);
             for entry in S::STRUCTURE.jacobian.q {
-                let slope = entry.value(self.constants.as_ref(), self.jacobian.as_ref());
-                leaving[entry.row] += slope * v[entry.col];
+                leaving[entry.row] += self.slope(entry) * v[entry.col];
             }
         }
         let (back, _) = self.split(|_| 0.0, |c| -leaving[c]);
         let v = S::PerCoordinate::<f64>::from_fn(|i| v[i] + back[i]);
-        let mut p = self.momentum_rate(constants, q);
+        let mut p = self.momentum_rate(constants, parameters_move, q);
         self.add_inertia(&v, &mut p);
         Moved { v, p }
     }
@@ -157,11 +213,13 @@ impl<'a, S: MechanicalSystem> Landing<'a, S> {
             let along = self.constraint_rates(&seeds.still, no_time, &by_arriving);
             along.add_pull(-1.0, impulse, &mut at_end.q);
             self.subtract_rate_derivatives(seeds, &by_rate, at_end);
-            seeds.add_parameter_rates(&mut at_end.parameters, |constants| {
-                let q = still::<S, _>(&self.state.q);
-                let rates = ConstraintRates::<S, _>::new(constants, Tangent::still(self.state.t), &q);
-                -rates.form(impulse, &by_arriving)
-            });
+            if seeds.reach.jacobian {
+                seeds.add_parameter_rates(&mut at_end.parameters, |constants| {
+                    let q = still::<S, _>(&self.state.q);
+                    let rates = ConstraintRates::<S, _>::new(constants, Tangent::still(self.state.t), &q);
+                    -rates.form(impulse, &by_arriving)
+                });
+            }
         }
         by_arriving
     }
@@ -198,6 +256,9 @@ impl<'a, S: MechanicalSystem> Landing<'a, S> {
                 sum.q[i] += force[i].rate;
             }
         }
+        if !seeds.reach.momentum {
+            return;
+        }
         seeds.add_parameter_rates(&mut sum.parameters, |constants| {
             let (q, v) = (still::<S, _>(q), still::<S, _>(v));
             let momentum = S::lagrangian_gradient(constants, Tangent::still(*t), &q, &v).momentum;
@@ -209,6 +270,9 @@ impl<'a, S: MechanicalSystem> Landing<'a, S> {
     fn subtract_rate_derivatives(&self, seeds: &Seeds<S>, x: &S::PerConstraint<f64>, sum: &mut StateGradient<S>) {
         let State { t, q, v, .. } = self.state;
         self.constraint_rates(&seeds.still, 1.0, v).add_pull(-1.0, x, &mut sum.q);
+        if !seeds.reach.jacobian {
+            return;
+        }
         seeds.add_parameter_rates(&mut sum.parameters, |constants| {
             let rates = ConstraintRates::<S, _>::new(constants, Tangent::still(*t), &still::<S, _>(q));
             -(rates.form(x, v) + rates.time_form(x))
@@ -218,8 +282,7 @@ impl<'a, S: MechanicalSystem> Landing<'a, S> {
     /// Subtracts `Gᵀ x`.
     fn subtract_pull(&self, x: &S::PerConstraint<f64>, sum: &mut S::PerCoordinate<f64>) {
         for entry in S::STRUCTURE.jacobian.q {
-            let slope = entry.value(self.constants.as_ref(), self.jacobian.as_ref());
-            sum[entry.col] -= slope * x[entry.row];
+            sum[entry.col] -= self.slope(entry) * x[entry.row];
         }
     }
 }

@@ -4,7 +4,10 @@
 //! has solved, and so exact for the discrete motion:
 //!
 //! - forward, for few directions and all states: [`TangentRun`];
-//! - backwards, for one number and all that it follows from: [`Simulation::gradient_of`](crate::integrator::Simulation::gradient_of);
+//! - backwards, for one number and all that it follows from: [`Simulation::gradient_of`](crate::integrator::Simulation::gradient_of), in about the time of
+//!   four runs and with `O(√N)` states kept of `N` steps;
+//! - Lyapunov exponents: [`LyapunovRun`];
+//! - a run as a function with a gradient, for optimizers: [`Objective`].
 
 mod composition;
 mod differentiable;
@@ -12,18 +15,29 @@ mod direction;
 mod error;
 mod evaluation;
 mod evi;
+mod galerkin;
+mod gauss;
 mod gradient;
+mod kicks;
 mod landing;
+mod lyapunov;
+mod matrix_evi;
 mod nodes;
+mod objective;
 mod parameters;
+mod points;
 mod tangent_run;
 mod vectors;
 
 pub use differentiable::{Backwards, Differentiable};
 pub use direction::Direction;
 pub use error::DerivativeError;
+pub use galerkin::NewtonWorkspace;
+pub use gauss::{GaussWorkspace, TakenGaussStep};
 pub use gradient::{Cost, Course, Gradient};
-pub use nodes::TakenStep;
+pub use lyapunov::LyapunovRun;
+pub use objective::{Design, Objective};
 pub use parameters::ParameterChoice;
+pub use points::TakenStep;
 pub use tangent_run::{Differentiate, TangentRun};
 pub use vectors::{StateGradient, StateTangent};

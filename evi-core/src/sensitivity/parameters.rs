@@ -6,8 +6,9 @@
 use std::vec::Vec;
 
 use super::DerivativeError;
+use super::evaluation::still;
 use crate::array::Array;
-use crate::mechanics::Mechanics;
+use crate::mechanics::{Mechanics, State};
 use crate::scalar::{Rate, Rates, Tangent};
 use crate::system::MechanicalSystem;
 
@@ -96,10 +97,47 @@ pub(super) struct Seeds<S: MechanicalSystem> {
     /// Of every [`ABREAST`] of the parameters.
     by_parameters: Vec<ConstantsAbreast<S>>,
     pub(super) n_parameters: usize,
+    pub(super) reach: Reach,
+}
+
+/// What follows the chosen parameters; the rest is not differentiated by them.
+#[derive(Clone, Copy)]
+pub(super) struct Reach {
+    pub(super) residuals: bool,
+    pub(super) jacobian: bool,
+    pub(super) momentum: bool,
+}
+
+impl Reach {
+    /// Rates of the chosen parameters that are no numbers reach everything that an operation joins to them, whatever the values are.
+    fn of<S: MechanicalSystem>(system: &S, choice: &ParameterChoice, at: &State<S>) -> Self {
+        let parameters = system.parameters();
+        let rate = |k: usize| if choice.indices.contains(&k) { f64::NAN } else { 0.0 };
+        let constants = S::constants(&Array::from_fn(|k| Tangent::new(parameters[k], rate(k))));
+        let (t, q, v) = (Tangent::still(at.t), still::<S, f64>(&at.q), still::<S, f64>(&at.v));
+        let momentum = S::lagrangian_gradient(&constants, t, &q, &v).momentum;
+        let (residuals, entries) = S::constraint_derivatives(&constants, t, &q);
+        let follows = |x: &Tangent| x.rate.is_nan();
+        let structure = S::STRUCTURE.jacobian;
+        Self {
+            residuals: residuals.as_ref().iter().any(follows),
+            jacobian: structure
+                .q
+                .iter()
+                .chain(structure.t)
+                .any(|entry| follows(&entry.value(constants.as_ref(), entries.as_ref()))),
+            momentum: momentum.as_ref().iter().any(follows),
+        }
+    }
 }
 
 impl<S: MechanicalSystem> Seeds<S> {
-    pub(super) fn new(system: &S, mechanics: &Mechanics<S>, choice: &ParameterChoice) -> Self {
+    pub(super) fn new(
+        system: &S,
+        mechanics: &Mechanics<S>,
+        choice: &ParameterChoice,
+        start: &State<S>,
+    ) -> Self {
         let parameters = system.parameters();
         let chunk = |indices: &[usize]| {
             let rate = |k: usize| indices.iter().position(|&index| index == k);
@@ -112,6 +150,7 @@ impl<S: MechanicalSystem> Seeds<S> {
             still_abreast: Array::from_fn(|k| Tangent::still(mechanics.constants[k])),
             by_parameters: choice.indices.chunks(ABREAST).map(chunk).collect(),
             n_parameters: choice.indices.len(),
+            reach: Reach::of(system, choice, start),
         }
     }
 

@@ -14,7 +14,7 @@ pub struct StateTangent<S: MechanicalSystem> {
     pub(super) p: S::PerCoordinate<f64>,
     pub(super) inputs: S::PerInput<f64>,
     pub(super) constants: MovingConstants<S>,
-    /// Whether constraints change with the parameters along this direction, or anything else does.
+    /// Whether the constants move.
     pub(super) parameters_move: bool,
 }
 
@@ -37,6 +37,11 @@ impl<S: MechanicalSystem> StateTangent<S> {
     /// The inputs of the steps from here on, changing along this direction.
     pub(super) fn moving_inputs(&self, inputs: &S::PerInput<f64>) -> S::PerInput<Tangent> {
         Array::from_fn(|k| Tangent::new(inputs[k], self.inputs[k]))
+    }
+
+    /// The constants, and whether they move.
+    pub(super) const fn parts(&self) -> (&MovingConstants<S>, bool) {
+        (&self.constants, self.parameters_move)
     }
 
     /// Whether every number is finite.
