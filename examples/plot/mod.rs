@@ -63,6 +63,8 @@ pub(crate) fn draw(path: &Path, panels: &[Panel]) -> Result<(), Box<dyn Error>> 
             .x_desc(panel.x_label)
             .y_desc(panel.y_label)
             .label_style((FONT, 13))
+            .x_label_formatter(&tick)
+            .y_label_formatter(&tick)
             .light_line_style(TRANSPARENT)
             .draw()?;
         for curve in &panel.curves {
@@ -95,7 +97,16 @@ pub(crate) fn draw(path: &Path, panels: &[Panel]) -> Result<(), Box<dyn Error>> 
     Ok(())
 }
 
-/// The axes that show every point, with some air.
+/// A number at an axis, of the digits that tell it from its neighbours.
+fn tick(x: &f64) -> String {
+    let text = format!("{x:.6}");
+    match text.trim_end_matches('0').trim_end_matches('.') {
+        "-0" => "0".into(),
+        text => text.into(),
+    }
+}
+
+/// The axes that show every point, with some air, and room for the legend above.
 fn ranges(panel: &Panel) -> (std::ops::Range<f64>, std::ops::Range<f64>) {
     let points = || panel.curves.iter().flat_map(|curve| &curve.points);
     let around = |values: &mut dyn Iterator<Item = f64>| {
@@ -115,5 +126,8 @@ fn ranges(panel: &Panel) -> (std::ops::Range<f64>, std::ops::Range<f64>) {
         };
         (x, y) = (widen(x, wide), widen(y, high));
     }
+    const LEGEND_ROW: f64 = 0.075;
+    let rows = panel.curves.iter().filter(|curve| curve.label.is_some()).count();
+    y.1 += LEGEND_ROW * rows as f64 * (y.1 - y.0);
     (x.0..x.1, y.0..y.1)
 }
