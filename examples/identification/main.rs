@@ -43,11 +43,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let objective = Objective(Fit { samples: samples.clone() });
 
     let guess = [1.0; 4];
-    let solver = LBFGS::new(MoreThuenteLineSearch::new(), 4).with_tolerance_grad(1e-8)?.with_tolerance_cost(1e-16)?;
+    let solver =
+        LBFGS::new(MoreThuenteLineSearch::new(), 4).with_tolerance_grad(1e-8)?.with_tolerance_cost(1e-16)?;
     let logarithms = guess.iter().map(|x: &f64| x.ln()).collect();
-    let found = Executor::new(objective, solver)
-        .configure(|state| state.param(logarithms).max_iters(100))
-        .run()?;
+    let found =
+        Executor::new(objective, solver).configure(|state| state.param(logarithms).max_iters(100)).run()?;
     let state = found.state();
     let best = state.get_best_param().ok_or("the optimizer found nothing")?;
     let fitted: [f64; 4] = core::array::from_fn(|k| best[k].exp());
@@ -65,24 +65,25 @@ fn main() -> Result<(), Box<dyn Error>> {
         );
     }
 
-    let coordinate = |index: usize, title: &'static str, y_label: &'static str| -> Result<Panel, Box<dyn Error>> {
-        let line = |label, colour, parameters: &[f64; 4]| -> Result<Curve, Box<dyn Error>> {
-            let points = paths(parameters)?.into_iter().map(|(t, q)| (t, q[index])).collect();
-            Ok(Curve { label: Some(label), colour, mark: Mark::Line, points })
+    let coordinate =
+        |index: usize, title: &'static str, y_label: &'static str| -> Result<Panel, Box<dyn Error>> {
+            let line = |label, colour, parameters: &[f64; 4]| -> Result<Curve, Box<dyn Error>> {
+                let points = paths(parameters)?.into_iter().map(|(t, q)| (t, q[index])).collect();
+                Ok(Curve { label: Some(label), colour, mark: Mark::Line, points })
+            };
+            let dots = samples.iter().map(|sample| (sample.t, sample.q[index])).collect();
+            Ok(Panel {
+                title,
+                x_label: "time [s]",
+                y_label,
+                is_to_scale: false,
+                curves: vec![
+                    line("guess", 5, &guess)?,
+                    line("found", 1, &fitted)?,
+                    Curve { label: Some("samples"), colour: 0, mark: Mark::Dots, points: dots },
+                ],
+            })
         };
-        let dots = samples.iter().map(|sample| (sample.t, sample.q[index])).collect();
-        Ok(Panel {
-            title,
-            x_label: "time [s]",
-            y_label,
-            is_to_scale: false,
-            curves: vec![
-                line("guess", 5, &guess)?,
-                line("found", 1, &fitted)?,
-                Curve { label: Some("samples"), colour: 0, mark: Mark::Dots, points: dots },
-            ],
-        })
-    };
     let panels = [coordinate(0, "Inner bob", "x₁ [m]")?, coordinate(2, "Outer bob", "x₂ [m]")?];
     let path = out.join("identification.svg");
     plot::draw(&path, &panels)?;

@@ -80,7 +80,9 @@ pub(crate) fn draw(path: &Path, panels: &[Panel]) -> Result<(), Box<dyn Error>> 
                 }
             };
             if let Some(label) = curve.label {
-                drawn.label(label).legend(move |(x, y)| Rectangle::new([(x, y - 2), (x + 16, y + 2)], colour.filled()));
+                drawn
+                    .label(label)
+                    .legend(move |(x, y)| Rectangle::new([(x, y - 2), (x + 16, y + 2)], colour.filled()));
             }
         }
         if panel.curves.iter().any(|curve| curve.label.is_some()) {
@@ -110,11 +112,13 @@ fn tick(x: &f64) -> String {
 fn ranges(panel: &Panel) -> (std::ops::Range<f64>, std::ops::Range<f64>) {
     let points = || panel.curves.iter().flat_map(|curve| &curve.points);
     let around = |values: &mut dyn Iterator<Item = f64>| {
-        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+        let (low, high) =
+            values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
         let air = 0.06 * (high - low).max(1e-9);
         (low - air, high + air)
     };
-    let (mut x, mut y) = (around(&mut points().map(|point| point.0)), around(&mut points().map(|point| point.1)));
+    let (mut x, mut y) =
+        (around(&mut points().map(|point| point.0)), around(&mut points().map(|point| point.1)));
     if panel.is_to_scale {
         // Of a panel without its labels.
         const ASPECT: f64 = 1.3;

@@ -36,9 +36,13 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     // What the end costs grows from solution to solution: a steep valley is entered from a gentle one.
     let mut forces = first_guess();
-    println!("weight of the end   iterations      cost   angle off upright   cart [m]   rates [rad/s, m/s]   largest force [N]");
+    println!(
+        "weight of the end   iterations      cost   angle off upright   cart [m]   rates [rad/s, m/s]   largest force [N]"
+    );
     for weight in [10.0, 100.0, 1_000.0, 10_000.0] {
-        let solver = LBFGS::new(MoreThuenteLineSearch::new(), 12).with_tolerance_grad(1e-5)?.with_tolerance_cost(1e-12)?;
+        let solver = LBFGS::new(MoreThuenteLineSearch::new(), 12)
+            .with_tolerance_grad(1e-5)?
+            .with_tolerance_cost(1e-12)?;
         let found = Executor::new(Objective(SwingUp { weight }), solver)
             .configure(|state| state.param(forces).max_iters(400))
             .run()?;
@@ -66,9 +70,10 @@ fn main() -> Result<(), Box<dyn Error>> {
             line(Some("cart"), 0, motion.iter().map(|(t, q, _)| (*t, q[0])).collect()),
         ],
     };
-    let steps = forces.iter().enumerate().flat_map(|(step, &force)| {
-        [(step as f64 * H, force), ((step + 1) as f64 * H, force)]
-    });
+    let steps = forces
+        .iter()
+        .enumerate()
+        .flat_map(|(step, &force)| [(step as f64 * H, force), ((step + 1) as f64 * H, force)]);
     let force = Panel {
         title: "Force on the cart",
         x_label: "time [s]",

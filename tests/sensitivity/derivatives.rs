@@ -1,11 +1,14 @@
 //! The derivatives of a run by everything that it follows from.
 
 use evi_core::prelude::*;
-use evi_core::sensitivity::{Course, Differentiable, Differentiate, Direction, ParameterChoice, StateGradient};
+use evi_core::sensitivity::{
+    Course, Differentiable, Differentiate, Direction, ParameterChoice, StateGradient,
+};
 use evi_examples::{DoublePendulum, HenonHeiles, KapitzaPendulum, Start};
 use evi_tests::Random;
 use evi_tests::scenes::{
-    ChargedSphericalPendulum, DoublePendulumInAngles, MotorisedDoublePendulum, PushedDumbbell, RelativisticBead,
+    ChargedSphericalPendulum, DoublePendulumInAngles, MotorisedDoublePendulum, PushedDumbbell,
+    RelativisticBead,
 };
 
 /// A field of a scene.
@@ -90,8 +93,7 @@ where
             parameters[k] = change.parameters[k];
         }
         let array = |x: &[f64]| <[f64; N]>::try_from(x).expect("one per coordinate");
-        let direction =
-            Direction::of_start(array(&change.q), array(&change.v)).with_parameters(parameters);
+        let direction = Direction::of_start(array(&change.q), array(&change.v)).with_parameters(parameters);
         let simulation = Simulation::new(self.system.clone(), self.scheme.clone());
         let mut run =
             simulation.start_with_tangents(self.start.q, self.start.v, &[direction]).expect("a start");
@@ -138,8 +140,7 @@ where
         };
         let simulation = Simulation::new(self.system.clone(), self.scheme.clone());
         let inputs = (0..STEPS).map(|step| self.inputs(step)).collect();
-        let course =
-            Course::new(self.start.q, self.start.v, STEPS).with_inputs(inputs).by_parameters(choice);
+        let course = Course::new(self.start.q, self.start.v, STEPS).with_inputs(inputs).by_parameters(choice);
         let gradient = simulation.gradient_of(&course, &cost).expect("a gradient");
         let alone = simulation.cost_of(&course, &cost).expect("a cost");
         assert_eq!(gradient.cost, alone, "the same sum of the same states");
@@ -154,8 +155,7 @@ where
         let mut parameters: S::PerParameter<f64> = evi_core::array::Array::from_fn(|_| 0.0);
         parameters.as_mut()[..n_parameters].copy_from_slice(&change.parameters[..n_parameters]);
         let array = |x: &[f64]| <[f64; N]>::try_from(x).expect("one per coordinate");
-        let direction =
-            Direction::of_start(array(&change.q), array(&change.v)).with_parameters(parameters);
+        let direction = Direction::of_start(array(&change.q), array(&change.v)).with_parameters(parameters);
         let mut run =
             simulation.start_with_tangents(self.start.q, self.start.v, &[direction]).expect("a start");
         let mut forward = 0.0;
@@ -169,9 +169,8 @@ where
             let mut by_state = StateGradient::zero(n_parameters);
             cost(step, run.state(), &mut by_state);
             let tangent = &run.tangents()[0];
-            forward += dot(&by_state.q, tangent.q())
-                + dot(&by_state.v, tangent.v())
-                + dot(&by_state.p, tangent.p());
+            forward +=
+                dot(&by_state.q, tangent.q()) + dot(&by_state.v, tangent.v()) + dot(&by_state.p, tangent.p());
             if step < STEPS {
                 forward += dot(by_state.inputs.as_ref(), &change.inputs[step as usize]);
                 run.advance().expect("a step");

@@ -41,7 +41,10 @@ fn inputs_that_are_not_one_list_per_step() {
     let course = Course::new([1.0], [0.0], 3).with_inputs(vec![[0.0]; 4]);
     let error = simulation.gradient_of(&course, &nothing).err();
     assert_eq!(error, Some(DerivativeError::InputCount { steps: 3, found: 4 }));
-    assert_eq!(simulation.cost_of(&course, &nothing), Err(DerivativeError::InputCount { steps: 3, found: 4 }));
+    assert_eq!(
+        simulation.cost_of(&course, &nothing),
+        Err(DerivativeError::InputCount { steps: 3, found: 4 })
+    );
 }
 
 #[test]
@@ -67,7 +70,10 @@ fn directions_that_are_no_numbers() {
 fn a_start_beside_the_constraints() {
     let simulation = Simulation::new(SYSTEM, Evi::midpoint(0.05));
     let error = simulation.gradient_of(&Course::new([0.5, 0.0, 2.0, 0.0], [0.0; 4], 3), &nothing).err();
-    assert!(matches!(error, Some(DerivativeError::Start(StartError::InconsistentPosition { .. }))), "{error:?}");
+    assert!(
+        matches!(error, Some(DerivativeError::Start(StartError::InconsistentPosition { .. }))),
+        "{error:?}"
+    );
 }
 
 /// A step without solution: state and vectors stand where they stood.

@@ -21,7 +21,8 @@ where
     let space = TangentSpace::at(simulation.system(), run.state());
     let directions: Vec<Direction<S>> = (0..space.velocity.ncols())
         .map(|column| {
-            let part = |from: usize| -> [f64; N] { core::array::from_fn(|i| space.velocity[(from + i, column)]) };
+            let part =
+                |from: usize| -> [f64; N] { core::array::from_fn(|i| space.velocity[(from + i, column)]) };
             Direction::of_start(part(0), part(N))
         })
         .collect();

@@ -48,13 +48,13 @@ pub(crate) use matrix_evi::Form;
 pub use matrix_evi::{
     LinearisedAlong, LinearisedAt, MatrixEvi, MatrixEviStep, QuadraticModel, StepMode, Stiffness,
 };
+#[cfg(feature = "std")]
+pub(crate) use multipliers::MultiplierStep;
 pub use of_rank::OfRank;
 #[cfg(feature = "std")]
 pub use proposal::{LONGEST_TRIAL, Member, PASSES_OF_NEWTON, Proposal, ProposalError, propose};
 pub use rescue::{Rescued, RescuedStep, Rescues};
 pub use run::Run;
-#[cfg(feature = "std")]
-pub(crate) use multipliers::MultiplierStep;
 #[cfg(feature = "generic")]
 pub(crate) use run::steps_between;
 pub use simulation::{ConstraintLabel, Simulation, StartError};

@@ -114,8 +114,7 @@ impl<S: MechanicalSystem> ImpulseStep<S> {
             Some(filter) => {
                 let filtered = times::<S>(filter, &self.part.displacement(q));
                 let at = Array::from_fn(|i| reference[i] + filtered[i]);
-                let inner =
-                    mechanics.potential_hessian_product(t, &at, multipliers, &times::<S>(filter, x));
+                let inner = mechanics.potential_hessian_product(t, &at, multipliers, &times::<S>(filter, x));
                 let mut product = Array::from_fn(|_| 0.0);
                 add_transposed::<S>(filter, &inner, &mut product);
                 product

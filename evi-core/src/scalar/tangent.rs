@@ -6,7 +6,9 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 use super::Scalar;
 
 /// The derivatives of a number along one direction, or along several side by side.
-pub(crate) trait Rate: Copy + Debug + Add<Output = Self> + Sub<Output = Self> + Neg<Output = Self> {
+pub(crate) trait Rate:
+    Copy + Debug + Add<Output = Self> + Sub<Output = Self> + Neg<Output = Self>
+{
     /// Of what stays as it is.
     const ZERO: Self;
 
@@ -82,7 +84,10 @@ impl<R: Rate> Mul for Tangent<R> {
 
     #[inline]
     fn mul(self, other: Self) -> Self {
-        Self { value: self.value * other.value, rate: self.rate.times(other.value) + other.rate.times(self.value) }
+        Self {
+            value: self.value * other.value,
+            rate: self.rate.times(other.value) + other.rate.times(self.value),
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Derivatives of exponential variational integrators.
 
-use super::landing::Landing;
 use super::kicks::{note_kicks, pull_over_kicks, push_over_kicks};
+use super::landing::Landing;
 use super::nodes::{NodeAction, OnNodes};
 use super::points::{PerPoint, PointAction, StepDerivative, TakenStep};
 use super::{Backwards, DerivativeError, Differentiable, StateGradient, StateTangent};
@@ -67,7 +67,10 @@ struct Matrix<S: MechanicalSystem> {
 }
 
 impl<S: MechanicalSystem> Matrix<S> {
-    fn new(action: &impl ImplicitStep<S>, TakenStep { start, end, differences, .. }: &TakenStep<S, 1>) -> Self {
+    fn new(
+        action: &impl ImplicitStep<S>,
+        TakenStep { start, end, differences, .. }: &TakenStep<S, 1>,
+    ) -> Self {
         let mechanics = action.mechanics();
         let at = StepStart::new(mechanics, start.t, &start.q, &start.p, &start.inputs);
         let mut block = Kkt::zero();

@@ -142,8 +142,7 @@ impl<S: MechanicalSystem, const K: usize> Differentiable<S> for GaussStep<S, K> 
         let singular = |matrix| DerivativeError::Singular { t: taken.start.t, matrix };
         workspace.0.factor(mechanics, &taken.start, &taken.velocities).map_err(singular)?;
         let nothing = Array::from_fn(|_| 0.0);
-        let by_gain =
-            Landing::new(mechanics, None, &taken.end)?.backward(seeds, &nothing, gradient);
+        let by_gain = Landing::new(mechanics, None, &taken.end)?.backward(seeds, &nothing, gradient);
         let positions: [S::PerCoordinate<f64>; K] =
             core::array::from_fn(|i| workspace.at_node(i, &taken.start.q, &taken.velocities));
         let zero = S::PerCoordinate::<f64>::from_fn(|_| 0.0);

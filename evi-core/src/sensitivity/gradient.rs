@@ -40,11 +40,7 @@ pub struct Course<S: MechanicalSystem> {
 
 impl<S: MechanicalSystem> Course<S> {
     /// From positions and velocities at time 0, on the constraints, over so many steps.
-    pub fn new(
-        q: impl Into<S::PerCoordinate<f64>>,
-        v: impl Into<S::PerCoordinate<f64>>,
-        steps: u64,
-    ) -> Self {
+    pub fn new(q: impl Into<S::PerCoordinate<f64>>, v: impl Into<S::PerCoordinate<f64>>, steps: u64) -> Self {
         let (q, v) = (q.into(), v.into());
         Self { q, v, steps, inputs: Vec::new(), parameters: ParameterChoice::none() }
     }
@@ -114,7 +110,11 @@ impl<S: MechanicalSystem, F: Scheme<S, Step: Differentiable<S>>> Simulation<S, F
     ///
     /// # Errors
     /// As for [`cost_of`](Self::cost_of); and where the equations of a step do not determine its derivative.
-    pub fn gradient_of(&self, course: &Course<S>, cost: &impl Cost<S>) -> Result<Gradient<S>, DerivativeError> {
+    pub fn gradient_of(
+        &self,
+        course: &Course<S>,
+        cost: &impl Cost<S>,
+    ) -> Result<Gradient<S>, DerivativeError> {
         course.check()?;
         let run = self.start(course.q.clone(), course.v.clone())?;
         if !course.parameters.is_empty() {
@@ -229,7 +229,12 @@ impl<S: MechanicalSystem, M: Differentiable<S>, C: Cost<S>> Sweep<'_, S, M, C> {
         let mut step = self.run.steps();
         while let Some((start, taken)) = self.stretch.pop() {
             step -= 1;
-            self.run.map().pull_back(&mut self.workspace, &taken, &Backwards(self.seeds), &mut self.gradient)?;
+            self.run.map().pull_back(
+                &mut self.workspace,
+                &taken,
+                &Backwards(self.seeds),
+                &mut self.gradient,
+            )?;
             self.cost.add(step, &start, &mut self.gradient);
             if S::N_INPUTS > 0 {
                 self.inputs.push(self.gradient.inputs.clone());

@@ -158,15 +158,24 @@ pub(super) fn pull_over_kicks<S: MechanicalSystem, F: KickDriftKick<S>>(
     gradient.v = Array::from_fn(|_| 0.0);
     if S::N_CONSTRAINTS > 0 {
         let q = moving::<S>(&start.q, &by_momentum);
-        ConstraintRates::<S>::new(&seeds.still, Tangent::still(start.t), &q)
-            .add_pull(-1.0, impulse, &mut gradient.q);
+        ConstraintRates::<S>::new(&seeds.still, Tangent::still(start.t), &q).add_pull(
+            -1.0,
+            impulse,
+            &mut gradient.q,
+        );
     }
     if let Some(action) = action.filter(|_| seeds.n_parameters > 0) {
         let along = Points { first: by_momentum.clone(), others: [by_arriving] };
         action.add_parameters(step, seeds, &along, gradient);
         let (of_momentum, of_residual) = ([by_momentum.clone()], [pull]);
         let times = |point: usize| if point == 0 { start.t } else { end.t };
-        subtract_constraint_parameters(seeds, step, times, (&of_momentum, &of_residual), &mut gradient.parameters);
+        subtract_constraint_parameters(
+            seeds,
+            step,
+            times,
+            (&of_momentum, &of_residual),
+            &mut gradient.parameters,
+        );
     }
     gradient.p = by_momentum;
     Ok(())

@@ -29,7 +29,10 @@ pub(super) struct Landing<'a, S: MechanicalSystem> {
 enum Solver<'a, S: MechanicalSystem> {
     Kkt(FactoredKkt<S>),
     /// By `G M⁻¹ Gᵀ`, as the steps of a constant mass do it.
-    Gram { legendre: &'a ConstantLegendre<S>, factors: S::GramFactors },
+    Gram {
+        legendre: &'a ConstantLegendre<S>,
+        factors: S::GramFactors,
+    },
 }
 
 /// The changes of velocity and momentum.
@@ -247,7 +250,12 @@ impl<'a, S: MechanicalSystem> Landing<'a, S> {
     }
 
     /// Adds the derivatives of `w · ∂L/∂v` at a fixed velocity.
-    fn add_momentum_derivatives(&self, seeds: &Seeds<S>, w: &S::PerCoordinate<f64>, sum: &mut StateGradient<S>) {
+    fn add_momentum_derivatives(
+        &self,
+        seeds: &Seeds<S>,
+        w: &S::PerCoordinate<f64>,
+        sum: &mut StateGradient<S>,
+    ) {
         let State { t, q, v, .. } = self.state;
         if Self::MOMENTUM_MOVES {
             let (q, v) = (still::<S, f64>(q), moving::<S>(v, w));
@@ -267,7 +275,12 @@ impl<'a, S: MechanicalSystem> Landing<'a, S> {
     }
 
     /// Subtracts the derivatives of `x · (G v + ∂φ/∂t)` at a fixed velocity.
-    fn subtract_rate_derivatives(&self, seeds: &Seeds<S>, x: &S::PerConstraint<f64>, sum: &mut StateGradient<S>) {
+    fn subtract_rate_derivatives(
+        &self,
+        seeds: &Seeds<S>,
+        x: &S::PerConstraint<f64>,
+        sum: &mut StateGradient<S>,
+    ) {
         let State { t, q, v, .. } = self.state;
         self.constraint_rates(&seeds.still, 1.0, v).add_pull(-1.0, x, &mut sum.q);
         if !seeds.reach.jacobian {

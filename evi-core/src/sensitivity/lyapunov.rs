@@ -35,7 +35,6 @@ pub struct LyapunovRun<S: MechanicalSystem, M: Differentiable<S>> {
     run: TangentRun<S, M>,
     /// Steps between two orthonormalizations.
     every: u64,
-    start_time: f64,
     /// Logarithms of the lengths so far.
     growth: Vec<f64>,
     volume: LiouvilleVolume,
@@ -59,7 +58,7 @@ impl<S: MechanicalSystem, M: Differentiable<S>> LyapunovRun<S, M> {
         count: usize,
         every: u64,
     ) -> Result<Self, DerivativeError> {
-        let dimension = 2 * (S::N_COORDINATES - S::N_CONSTRAINTS);
+        let dimension = 2 * (S::N_COORDINATES - S::STATED_RANK.unwrap_or(S::N_CONSTRAINTS));
         if count == 0 || count > dimension || every == 0 {
             return Err(DerivativeError::Dimension { asked: count, dimension });
         }
@@ -68,7 +67,6 @@ impl<S: MechanicalSystem, M: Differentiable<S>> LyapunovRun<S, M> {
         let directions: Vec<_> = (0..count).map(|_| Direction::of_start(vector(), vector())).collect();
         let run = simulation.start_with_tangents(q, v, &directions)?;
         let mut run = Self {
-            start_time: run.state().t,
             run,
             every,
             growth: std::vec![0.0; count],
@@ -94,7 +92,7 @@ impl<S: MechanicalSystem, M: Differentiable<S>> LyapunovRun<S, M> {
     pub fn advance_to(&mut self, t: f64) -> Result<(), DerivativeError> {
         for _ in 0..self.run.steps_to(t)? {
             self.run.advance()?;
-            if self.run.run().steps() % self.every == 0 {
+            if self.run.run().steps().is_multiple_of(self.every) {
                 self.make_orthonormal()?;
             }
         }
@@ -110,13 +108,14 @@ impl<S: MechanicalSystem, M: Differentiable<S>> LyapunovRun<S, M> {
     /// The rate of growth of the volume of Liouville that the vectors span, per unit of time: that of all exponents together is zero to round-off. `None`
     /// for an odd number of vectors, which span none.
     pub fn liouville_rate(&self) -> Option<f64> {
-        (self.growth.len() % 2 == 0).then(|| self.volume_growth / self.elapsed())
+        self.growth.len().is_multiple_of(2).then(|| self.volume_growth / self.elapsed())
     }
 
+    /// The time up to the last orthonormalization.
     fn elapsed(&self) -> f64 {
         let steps = self.run.run().steps() / self.every * self.every;
-        // As many whole intervals as there were, as a number that every float holds.
-        steps as i64 as f64 * self.run.h() + (self.run.run().start_time() - self.start_time)
+        // The cast of a signed number is one instruction; no run has 2⁶³ steps.
+        steps as i64 as f64 * self.run.h()
     }
 
     /// Gram and Schmidt's method, twice, on positions and velocities in the units of the scene: exponents do not depend on what a length is.
@@ -191,7 +190,7 @@ impl LiouvilleVolume {
     /// `½ ln det(Wᵀ J W)`; 0 for frames without a volume.
     fn logarithm<S: MechanicalSystem>(&mut self, frame: &[StateTangent<S>]) -> f64 {
         let count = frame.len();
-        if count % 2 == 1 {
+        if !count.is_multiple_of(2) {
             return 0.0;
         }
         for (row, a) in frame.iter().enumerate() {

@@ -61,7 +61,10 @@ impl<S: MechanicalSystem, const K: usize> MatrixAction<S, K> {
             return Ok(());
         }
         let requirement = "constraints that are quadratic, or the trapezoidal rule";
-        Err(DerivativeError::Unsupported { scheme: "a linearisation that is sampled between the ends", requirement })
+        Err(DerivativeError::Unsupported {
+            scheme: "a linearisation that is sampled between the ends",
+            requirement,
+        })
     }
 }
 
@@ -103,7 +106,9 @@ impl<S: MechanicalSystem, const K: usize> Differentiable<S> for MatrixEviStep<S,
     ) -> Result<(), DerivativeError> {
         let no_action = None::<&MatrixAction<S, K>>;
         match self.form() {
-            Form::Impulse { step, .. } => push_over_kicks(step.free(), self.mechanics(), no_action, taken, tangents),
+            Form::Impulse { step, .. } => {
+                push_over_kicks(step.free(), self.mechanics(), no_action, taken, tangents)
+            }
             Form::General(action) => push_forward(action, action, None, taken, tangents),
         }
     }

@@ -51,11 +51,7 @@ impl<S: MechanicalSystem, N: NodeAction<S, A>, const A: usize> PointAction<S, A>
         self.0.point_time(t, point)
     }
 
-    fn end_momenta(
-        &self,
-        start: &State<S>,
-        differences: &PerPoint<S, A>,
-    ) -> [S::PerCoordinate<f64>; 2] {
+    fn end_momenta(&self, start: &State<S>, differences: &PerPoint<S, A>) -> [S::PerCoordinate<f64>; 2] {
         let (mechanics, h) = (self.0.mechanics(), self.0.h());
         let mut sums = [zero::<S>(), zero::<S>()];
         for node in 0..self.0.n_nodes() {

@@ -75,9 +75,10 @@ impl ParameterChoice {
 
 /// The place of a parameter among those that the equations use.
 pub(super) fn parameter_index<S: MechanicalSystem>(name: &str) -> Result<usize, DerivativeError> {
-    S::PARAMETERS.iter().position(|parameter| *parameter == name).ok_or_else(|| {
-        DerivativeError::UnknownParameter { name: name.into(), known: S::PARAMETERS }
-    })
+    S::PARAMETERS
+        .iter()
+        .position(|parameter| *parameter == name)
+        .ok_or_else(|| DerivativeError::UnknownParameter { name: name.into(), known: S::PARAMETERS })
 }
 
 /// The rates of the constants where the parameters change at `rates`.

@@ -34,11 +34,7 @@ pub(super) trait PointAction<S: MechanicalSystem, const A: usize> {
     fn point_time(&self, t: f64, point: usize) -> f64;
 
     /// `P_a` of the first point and of the last.
-    fn end_momenta(
-        &self,
-        start: &State<S>,
-        differences: &PerPoint<S, A>,
-    ) -> [S::PerCoordinate<f64>; 2];
+    fn end_momenta(&self, start: &State<S>, differences: &PerPoint<S, A>) -> [S::PerCoordinate<f64>; 2];
 
     /// The rates of `P_a` where the points, the constants and the inputs move.
     fn momentum_rates(
@@ -200,8 +196,7 @@ impl<'a, S: MechanicalSystem, N: PointAction<S, A>, const A: usize> StepDerivati
             let rates = ConstraintRates::<S>::new(&seeds.still, t, &moving::<S>(&start.q, &of_rows.first));
             rates.add_pull(-1.0, &impulses[0], &mut gradient.q);
             let of_momentum: PerPoint<S, A> = core::array::from_fn(|a| of_rows.get(a).clone());
-            let of_residual =
-                core::array::from_fn(|a| Array::from_fn(|c| rows[a][constraint_index::<S>(c)]));
+            let of_residual = core::array::from_fn(|a| Array::from_fn(|c| rows[a][constraint_index::<S>(c)]));
             let time = |point: usize| self.action.point_time(start.t, point);
             let by_rows = (&of_momentum, &of_residual);
             subtract_constraint_parameters(seeds, self.step, time, by_rows, &mut gradient.parameters);

@@ -81,7 +81,8 @@ impl<S: MechanicalSystem, F: Scheme<S, Step: Differentiable<S>>> Differentiate<S
         if directions.iter().any(Direction::moves_parameters) {
             run.map().check_parameters()?;
         }
-        let vectors = directions.iter().map(|direction| direction.at(self.system(), run.mechanics(), run.state()));
+        let vectors =
+            directions.iter().map(|direction| direction.at(self.system(), run.mechanics(), run.state()));
         let tangents = vectors.collect::<Result<Vec<_>, _>>()?;
         Ok(TangentRun { workspace: run.map().workspace(), moving: tangents.clone(), tangents, run })
     }
