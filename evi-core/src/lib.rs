@@ -32,7 +32,8 @@
 //!
 //! [`mod@array`], [`scalar`], [`memory`], [`system`] and [`scheme`] stand at the bottom; above them `newton` and [`linear`], then
 //! [`mechanics`] (energies, projections, the equations of one step), then [`integrator`] (one-step maps and runs),
-//! and beside the integrators `assembled` for scenes of many bodies, [`baseline`], [`generic`], [`comparison`], [`report`] and [`watch`]. Imports point downwards.
+//! and beside the integrators `assembled` for scenes of many bodies, [`baseline`], [`generic`], [`comparison`], [`report`], `sensitivity` and
+//! [`watch`]. Imports point downwards.
 //!
 //! # Features
 //!
@@ -66,6 +67,8 @@ mod newton;
 pub mod report;
 pub mod scalar;
 pub mod scheme;
+#[cfg(feature = "std")]
+pub mod sensitivity;
 pub mod system;
 pub mod watch;
 

@@ -285,6 +285,30 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
         Ok((solution.difference, [lost_q, lost_p]))
     }
 
+    /// The action of a step.
+    #[cfg(feature = "std")]
+    pub(crate) const fn action(&self) -> &DiscreteLagrangian<S, F::Table<K>, K> {
+        &self.action
+    }
+
+    /// The Legendre transform of a constant mass matrix.
+    #[cfg(feature = "std")]
+    pub(crate) const fn legendre(&self) -> Option<&ConstantLegendre<S>> {
+        self.legendre.as_ref()
+    }
+
+    /// The step of a quadratic Lagrangian, if the steps are such.
+    #[cfg(feature = "std")]
+    pub(crate) const fn folded(&self) -> Option<&MultiplierStep<S, FoldedStep<S, F>>> {
+        if FoldedStep::<S, F>::EXISTS { self.folded.as_ref() } else { None }
+    }
+
+    /// The step of a potential that acts at the ends alone, if the steps are such.
+    #[cfg(feature = "std")]
+    pub(crate) const fn leapfrog(&self) -> Option<&MultiplierStep<S, LeapfrogStep<S>>> {
+        if Self::MAY_LEAP { self.leapfrog.as_ref() } else { None }
+    }
+
     /// How far the frequency of every coordinate is from where steps lose their meaning.
     ///
     /// ```

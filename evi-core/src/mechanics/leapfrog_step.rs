@@ -46,6 +46,30 @@ impl<S: MechanicalSystem> LeapfrogStep<S> {
     }
 }
 
+#[cfg(feature = "std")]
+impl<S: MechanicalSystem> LeapfrogStep<S> {
+    /// `½h ∂²L/∂q² x`.
+    fn kick_product(
+        &self,
+        mechanics: &Mechanics<S>,
+        t: f64,
+        q: &S::PerCoordinate<f64>,
+        x: &S::PerCoordinate<f64>,
+    ) -> S::PerCoordinate<f64> {
+        let at_rest = Array::from_fn(|_| 0.0);
+        let (_, hessian) = S::lagrangian_derivatives(&mechanics.constants, t, q, &at_rest);
+        let mut product = S::PerCoordinate::<f64>::from_fn(|_| 0.0);
+        for entry in S::STRUCTURE.hessian.qq {
+            let value = self.half_h * entry.value(mechanics.constants.as_ref(), hessian.as_ref());
+            product[entry.row] += value * x[entry.col];
+            if entry.row != entry.col {
+                product[entry.col] += value * x[entry.row];
+            }
+        }
+        product
+    }
+}
+
 impl<S: MechanicalSystem> KickDriftKick<S> for LeapfrogStep<S> {
     type Coupling = AsScene;
 
@@ -71,6 +95,30 @@ impl<S: MechanicalSystem> KickDriftKick<S> for LeapfrogStep<S> {
     ) -> S::PerCoordinate<f64> {
         let p = self.kicked(mechanics, t, q, p);
         self.legendre.canonical(&p)
+    }
+
+    #[cfg(feature = "std")]
+    #[inline]
+    fn start_kick_product(
+        &self,
+        mechanics: &Mechanics<S>,
+        t: f64,
+        q: &S::PerCoordinate<f64>,
+        x: &S::PerCoordinate<f64>,
+    ) -> S::PerCoordinate<f64> {
+        self.kick_product(mechanics, t, q, x)
+    }
+
+    #[cfg(feature = "std")]
+    #[inline]
+    fn end_kick_product(
+        &self,
+        mechanics: &Mechanics<S>,
+        t: f64,
+        q: &S::PerCoordinate<f64>,
+        x: &S::PerCoordinate<f64>,
+    ) -> S::PerCoordinate<f64> {
+        self.kick_product(mechanics, t, q, x)
     }
 
     #[inline(always)]

@@ -44,6 +44,13 @@ impl<S: MechanicalSystem> ConstantLegendre<S> {
         Ok(Self { inverse_mass, momentum_at_rest: momentum })
     }
 
+    /// `M⁻¹`.
+    #[cfg(feature = "std")]
+    #[inline(always)]
+    pub(crate) const fn inverse_mass(&self) -> &CoordinateMatrix<S> {
+        &self.inverse_mass
+    }
+
     /// The velocity of the momentum `p`.
     #[inline(always)]
     pub(crate) fn velocity(&self, p: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {

@@ -47,6 +47,12 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>> MultiplierStep<S, F> {
         &self.free
     }
 
+    /// `ℓ` of the last step that was taken.
+    #[cfg(feature = "std")]
+    pub(crate) const fn last_impulse(&self) -> &S::PerConstraint<f64> {
+        &self.history.previous[0]
+    }
+
     /// Overwrites `state` with the state one step of size `h` later, and returns what its positions and momenta have lost.
     ///
     /// What follows where two corrections do not suffice takes copies, and ends the step by itself: on the way that most steps
