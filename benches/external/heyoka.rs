@@ -77,19 +77,29 @@ pub fn heyoka<S: MechanicalSystem>(
     tolerances: &[f64],
     repetitions: u32,
 ) -> Result<Vec<HeyokaRow>, HeyokaError> {
+    let request = format!(
+        "{{\"scene\": \"{scene}\", \"parameters\": {}, \"q\": {q:?}, \"v\": {v:?}, \"t\": {t:?}, \
+         \"tolerances\": {tolerances:?}, \"repetitions\": {repetitions}}}",
+        named_parameters(system)
+    );
+    answer("peers/heyoka_peer.py", scene, &request)?.lines().map(|line| row(line, q.len())).collect()
+}
+
+/// The parameters of a scene as a JSON object.
+pub(super) fn named_parameters<S: MechanicalSystem>(system: &S) -> String {
+    let parameters = system.parameters();
+    let named = S::PARAMETERS.iter().zip(parameters.as_ref()).map(|(name, x)| format!("\"{name}\": {x:?}"));
+    format!("{{{}}}", named.collect::<Vec<_>>().join(", "))
+}
+
+/// What the script answers to a request.
+pub(super) fn answer(script: &str, scene: &str, request: &str) -> Result<String, HeyokaError> {
     let python = std::env::var(PYTHON).unwrap_or_else(|_| "python3".to_owned());
     let import = Command::new(&python).args(["-c", "import heyoka"]).stderr(Stdio::null()).status();
     if !import.is_ok_and(|status| status.success()) {
         return Err(HeyokaError::NotInstalled { python });
     }
-    let parameters = system.parameters();
-    let named = S::PARAMETERS.iter().zip(parameters.as_ref()).map(|(name, x)| format!("\"{name}\": {x:?}"));
-    let request = format!(
-        "{{\"scene\": \"{scene}\", \"parameters\": {{{}}}, \"q\": {q:?}, \"v\": {v:?}, \"t\": {t:?}, \
-         \"tolerances\": {tolerances:?}, \"repetitions\": {repetitions}}}",
-        named.collect::<Vec<_>>().join(", ")
-    );
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("peers/heyoka_peer.py");
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join(script);
     let mut program = Command::new(&python)
         .arg(script)
         .stdin(Stdio::piped())
@@ -100,14 +110,13 @@ pub fn heyoka<S: MechanicalSystem>(
     program.stdin.take().map_or(Ok(()), |mut input| input.write_all(request.as_bytes()))?;
     let output = program.wait_with_output()?;
     match output.status.code() {
-        Some(0) => {}
-        Some(UNKNOWN_SCENE) => return Err(HeyokaError::UnknownScene { scene: scene.to_owned() }),
+        Some(0) => Ok(String::from_utf8_lossy(&output.stdout).into_owned()),
+        Some(UNKNOWN_SCENE) => Err(HeyokaError::UnknownScene { scene: scene.to_owned() }),
         _ => {
             let message = String::from_utf8_lossy(&output.stderr).trim().to_owned();
-            return Err(HeyokaError::Ended { status: output.status, message });
+            Err(HeyokaError::Ended { status: output.status, message })
         }
     }
-    String::from_utf8_lossy(&output.stdout).lines().map(|line| row(line, q.len())).collect()
 }
 
 /// `tolerance,microseconds,steps,q...,v...`.

@@ -7,11 +7,13 @@
 mod diffsol;
 mod dop853;
 mod heyoka;
+mod heyoka_batch;
 mod index_one;
 
 pub use diffsol::{DiffsolError, DiffsolMethod, diffsol};
 pub use dop853::{Dop853Error, dop853};
 pub use heyoka::{HeyokaError, HeyokaRow, heyoka};
+pub use heyoka_batch::{BatchRow, heyoka_batch};
 
 /// What the error of a step of size `h` may be, in every component `y`: `absolute + relative · |y|`.
 #[derive(Clone, Copy, Debug, PartialEq)]

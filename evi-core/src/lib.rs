@@ -54,7 +54,11 @@ extern crate self as evi_core;
 pub mod array;
 pub mod baseline;
 #[cfg(feature = "std")]
+pub mod columns;
+#[cfg(feature = "std")]
 pub mod comparison;
+#[cfg(feature = "std")]
+pub mod ensemble;
 pub mod generic;
 pub mod integrator;
 pub mod linear;

@@ -42,6 +42,8 @@ pub use gauss::{Gauss, GaussStep};
 pub use matrix_evi::{
     LinearisedAlong, LinearisedAt, MatrixEvi, MatrixEviStep, QuadraticModel, StepMode, Stiffness,
 };
+#[cfg(feature = "std")]
+pub(crate) use multipliers::TRUSTED;
 pub use of_rank::OfRank;
 #[cfg(feature = "std")]
 pub use proposal::{LONGEST_TRIAL, Member, PASSES_OF_NEWTON, Proposal, ProposalError, propose};
@@ -49,6 +51,8 @@ pub use rescue::{Rescued, RescuedStep, Rescues};
 pub use run::Run;
 #[cfg(feature = "generic")]
 pub(crate) use run::steps_between;
+#[cfg(feature = "std")]
+pub(crate) use simulation::consistent_start;
 pub use simulation::{ConstraintLabel, Simulation, StartError};
 #[cfg(feature = "std")]
 pub use trajectory::{Interrupted, Trajectory};
