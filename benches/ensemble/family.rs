@@ -1,7 +1,6 @@
 //! The members that are measured: one scene with unequal parameters and starts.
 
 use evi_core::ensemble::{Member, Quantity};
-use evi_core::prelude::*;
 use evi_examples::{Chain5, DoublePendulum, Scene, SphericalPendulum, StiffSpringPendulum};
 
 /// A scene with members by index.

@@ -16,16 +16,16 @@ use crate::family::Family;
 /// A row of `ensemble.csv`.
 #[derive(Clone, Serialize)]
 pub(crate) struct Row {
-    scene: &'static str,
-    method: String,
-    lanes: usize,
-    threads: usize,
-    processes: usize,
-    trajectories: usize,
-    ns_per_trajectory_step: f64,
+    pub(crate) scene: &'static str,
+    pub(crate) method: String,
+    pub(crate) lanes: usize,
+    pub(crate) threads: usize,
+    pub(crate) processes: usize,
+    pub(crate) trajectories: usize,
+    pub(crate) ns_per_trajectory_step: f64,
     /// Over single runs on one thread.
-    speedup: f64,
-    max_constraint_error: f64,
+    pub(crate) speedup: f64,
+    pub(crate) max_constraint_error: f64,
 }
 
 /// Trajectories that are moved at once; twice the length of a chunk, so that two threads have one each.
@@ -46,9 +46,9 @@ pub(crate) fn all(quick: bool) -> Result<Vec<Row>, Box<dyn Error>> {
     let (repetitions, length) = if quick { (5, 1) } else { (25, 5) };
     let mut rows = Vec::new();
     let steps = 2_000 * length;
-    let mut ways = ways::<DoublePendulum, _>("midpoint", Evi::midpoint(0.01), steps);
-    ways.insert(0, by_hand(steps));
-    rows.extend(measured::<DoublePendulum>(ways, repetitions)?);
+    let mut pendulums = ways::<DoublePendulum, _>("midpoint", Evi::midpoint(0.01), steps);
+    pendulums.insert(0, by_hand(steps));
+    rows.extend(measured::<DoublePendulum>(pendulums, repetitions)?);
     let ways_of_8 = ways::<DoublePendulum, _>("Galerkin 8", Galerkin::<8>::new(0.05), 100 * length);
     rows.extend(measured::<DoublePendulum>(ways_of_8, repetitions)?);
     let spherical = ways::<SphericalPendulum, _>("midpoint", Evi::midpoint(0.01), steps);

@@ -3,7 +3,7 @@
 //! Every pendulum has its own masses and lengths. Tests are made for all lanes at once; what a lane does not need is blended out.
 
 use evi_core::ensemble::LaneMask;
-use evi_core::scalar::{LANES, Lanes, Scalar};
+use evi_core::scalar::{InstructionSet, LANES, LaneOperation, Lanes, Scalar};
 use evi_examples::{DoublePendulum, Start};
 
 use super::MAX_CORRECTIONS;
@@ -239,22 +239,28 @@ impl HandWrittenLanes {
     }
 }
 
-/// Takes so many steps of all groups, in turn, in the vector instructions of this machine; whether all of them were found.
-pub fn advance_all(groups: &mut [HandWrittenLanes], steps: u64) -> bool {
-    if evi_core::scalar::InstructionSet::detect().vector_width() > 2 {
-        Lanes::compiled_apart(|| advance_in_turn::<true>(groups, steps))
-    } else {
-        Lanes::compiled_apart(|| advance_in_turn::<false>(groups, steps))
+/// So many steps of all groups, in turn, as an operation on lanes.
+struct Steps<'a> {
+    groups: &'a mut [HandWrittenLanes],
+    steps: u64,
+}
+
+impl LaneOperation for Steps<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) -> bool {
+        let mut all = true;
+        for _ in 0..self.steps {
+            for group in self.groups.iter_mut() {
+                all &= group.advance::<FUSED>();
+            }
+        }
+        all
     }
 }
 
-#[inline(always)]
-fn advance_in_turn<const FUSED: bool>(groups: &mut [HandWrittenLanes], steps: u64) -> bool {
-    let mut all = true;
-    for _ in 0..steps {
-        for group in groups.iter_mut() {
-            all &= group.advance::<FUSED>();
-        }
-    }
-    all
+/// Takes so many steps of all groups, in turn, in the vector instructions of this machine; whether all of them were found.
+pub fn advance_all(groups: &mut [HandWrittenLanes], steps: u64) -> bool {
+    InstructionSet::detect().run(Steps { groups, steps })
 }

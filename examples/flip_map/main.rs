@@ -1,7 +1,7 @@
 //! The flip-time map of the double pendulum: over all starts at rest, how long it takes until a rod swings over the top.
 //!
 //! `cargo run --release --example flip_map -- --out flips.png`. The angles of the rods at the start, from −180° to 180° from hanging, are the axes: the
-//! inner one to the right, the outer one upwards. Bright starts flip early, dark ones late, black ones not before the end. Around rest in the middle
+//! inner one to the right, the outer one upwards. Bright starts flip early, dark ones late, as many in every shade; black ones not before the end. Around rest in the middle
 //! no start has the energy to flip; the edge of the rest is a fractal (Heyl, The double pendulum fractal, 2008).
 
 mod flips;
@@ -74,7 +74,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         outcome.failures.len(),
         begin.elapsed().as_secs_f64()
     );
-    picture::save(&out, width, &times, to)?;
+    picture::save(&out, width, &times)?;
     println!("wrote {}", out.display());
     Ok(())
 }

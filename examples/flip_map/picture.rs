@@ -19,25 +19,27 @@ const COLOURS: [[f64; 3]; 9] = [
 ];
 /// Of starts that do not flip.
 const NEVER: [u8; 3] = [0, 0, 0];
-/// No start at rest flips sooner.
-const SOONEST: f64 = 0.5;
 
-/// The colour of a flip at `t`, of times up to `latest`, on a logarithmic scale.
-fn colour(t: f64, latest: f64) -> [u8; 3] {
-    if t.is_nan() {
-        return NEVER;
-    }
-    let late = ((t / SOONEST).ln() / (latest / SOONEST).ln()).clamp(0.0, 1.0);
-    let place = (1.0 - late) * (COLOURS.len() - 1) as f64;
+/// The colour of the share of flips that come later.
+fn colour(share_later: f64) -> [u8; 3] {
+    let place = share_later * (COLOURS.len() - 1) as f64;
     let lower = (place as usize).min(COLOURS.len() - 2);
     let share = place - lower as f64;
     std::array::from_fn(|k| ((1.0 - share) * COLOURS[lower][k] + share * COLOURS[lower + 1][k]).round() as u8)
 }
 
-/// Writes a square picture of the times, row by row from the bottom.
-pub(crate) fn save(path: &Path, width: usize, times: &[f64], latest: f64) -> Result<(), Box<dyn Error>> {
-    let from_the_top = times.chunks(width).rev().flatten();
-    let pixels: Vec<u8> = from_the_top.flat_map(|t| colour(*t, latest)).collect();
+/// Writes a square picture of the times, row by row from the bottom; NaN where there is none. Each colour has the same number of starts.
+pub(crate) fn save(path: &Path, width: usize, times: &[f64]) -> Result<(), Box<dyn Error>> {
+    let mut sorted: Vec<f64> = times.iter().copied().filter(|t| !t.is_nan()).collect();
+    sorted.sort_by(f64::total_cmp);
+    let of = |t: &f64| {
+        if t.is_nan() {
+            return NEVER;
+        }
+        let sooner = sorted.partition_point(|other| other < t);
+        colour(1.0 - sooner as f64 / sorted.len() as f64)
+    };
+    let pixels: Vec<u8> = times.chunks(width).rev().flatten().flat_map(of).collect();
     let mut encoder = png::Encoder::new(BufWriter::new(File::create(path)?), width as u32, width as u32);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);

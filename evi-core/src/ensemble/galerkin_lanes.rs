@@ -207,10 +207,10 @@ impl<S: MechanicalSystem, const K: usize> GalerkinLanes<S, K> {
         }
     }
 
-    /// `q₀ + h cᵢ v₀ + h² Σⱼ Bᵢⱼ aⱼ` at all nodes.
+    /// `q₀ + h cᵢ v₀ + h² Σⱼ Bᵢⱼ aⱼ` at the nodes from `first` on.
     #[inline(always)]
-    fn place<const FUSED: bool>(&mut self, state: &LaneState<S>) {
-        for node in 0..K {
+    fn place<const FUSED: bool>(&mut self, state: &LaneState<S>, first: usize) {
+        for node in first..K {
             let mut sum: Vector<S> = nothing();
             for i in 0..S::N_COORDINATES {
                 sum[i] = Lanes::splat(self.tables.nodes[node]) * state.v[i];
@@ -454,7 +454,7 @@ impl<S: MechanicalSystem, const K: usize> LaneMap<S> for GalerkinLanes<S, K> {
     #[inline(always)]
     fn advance<const FUSED: bool>(&mut self, state: &mut LaneState<S>, active: LaneMask) -> LaneMask {
         self.predict::<FUSED>();
-        self.place::<FUSED>(state);
+        self.place::<FUSED>(state, 0);
         let per_reach = self.per_reach(state);
         let mut progress = LaneProgress { pending: active, previous: Lanes::ZERO, rate: Lanes::ZERO };
         let mut stale = LaneMask::ALL;
@@ -464,14 +464,15 @@ impl<S: MechanicalSystem, const K: usize> LaneMap<S> for GalerkinLanes<S, K> {
             let is_all_stale = !progress.pending.without(stale).is_any();
             let farthest = self.project_points::<FUSED>(state.t, is_first, stale, is_all_stale);
             self.accelerate::<FUSED>(state, is_first, active.without(progress.pending));
-            self.place::<FUSED>(state);
             let length = Scalar::sqrt(farthest) * per_reach;
             stale = LaneMask::below(Lanes::splat(STALE), length).and(progress.pending);
             // In the first pass nothing has moved yet.
             if !(is_first && Self::FORCE_VARIES) {
                 progress.record(length);
             }
-            if !progress.pending.is_any() {
+            let is_last = !progress.pending.is_any();
+            self.place::<FUSED>(state, if is_last { K - 1 } else { 0 });
+            if is_last {
                 break;
             }
         }

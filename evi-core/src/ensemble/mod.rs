@@ -20,6 +20,8 @@ mod lane_state;
 mod mask;
 mod members;
 mod multiplier_lanes;
+#[cfg(feature = "mpi")]
+mod processes;
 mod projection;
 mod run;
 mod section;

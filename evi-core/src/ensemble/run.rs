@@ -1,6 +1,6 @@
 //! An ensemble: a scheme, when members are seen, and their motion as one call.
 
-use core::ops::ControlFlow;
+use core::ops::{ControlFlow, Range};
 use std::sync::Mutex;
 
 use super::chunk::{Gathered, Motion, Schedule};
@@ -139,6 +139,27 @@ impl<F, X> Ensemble<F, X> {
         self
     }
 
+    /// Number of chunks that so many members make.
+    pub(super) const fn chunks(&self, members: usize) -> usize {
+        members.div_ceil(self.chunk)
+    }
+
+    /// The members of a chunk.
+    pub(super) fn range(&self, chunk: usize, members: usize) -> Range<usize> {
+        chunk * self.chunk..((chunk + 1) * self.chunk).min(members)
+    }
+
+    /// The motion of members, and what is gathered of it.
+    pub(super) const fn motion<'a, G>(&'a self, gather: &'a G) -> Motion<'a, F, X, G> {
+        Motion { scheme: &self.scheme, schedule: self.schedule, section: &self.section, gather }
+    }
+
+    /// Number of threads that are asked for.
+    #[cfg(feature = "mpi")]
+    pub(super) const fn wanted_threads(&self) -> Option<usize> {
+        self.threads
+    }
+
     /// Number of steps that a member takes from start to end.
     pub const fn steps(&self) -> u64 {
         self.schedule.samples as u64 * self.schedule.stride
@@ -177,9 +198,9 @@ impl<F, X> Ensemble<F, X> {
         G: Gather<S>,
     {
         let count = members.count();
-        let chunks = count.div_ceil(self.chunk);
-        let range = |chunk: usize| chunk * self.chunk..((chunk + 1) * self.chunk).min(count);
-        let motion = Motion { scheme: &self.scheme, schedule: self.schedule, section: &self.section, gather };
+        let chunks = self.chunks(count);
+        let range = |chunk: usize| self.range(chunk, count);
+        let motion = self.motion(gather);
         let mut tree = Tree::new(chunks);
         let mut finished = 0;
         let mut missing = Vec::new();
@@ -218,7 +239,7 @@ impl<F, X> Ensemble<F, X> {
 
 /// Does the work of every chunk until one of them breaks.
 #[cfg(feature = "rayon")]
-fn for_each(
+pub(super) fn for_each(
     chunks: &[usize],
     threads: Option<usize>,
     work: &(impl Fn(usize) -> ControlFlow<Result<(), JournalError>> + Sync),
@@ -228,6 +249,7 @@ fn for_each(
     let all = || chunks.par_iter().try_for_each(|&chunk| work(chunk));
     let flow = match threads {
         Some(1) => chunks.iter().try_for_each(|&chunk| work(chunk)),
+        Some(threads) if threads == rayon::current_num_threads() => all(),
         Some(threads) => rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
             .build()
@@ -240,7 +262,7 @@ fn for_each(
 
 /// Does the work of every chunk until one of them breaks.
 #[cfg(not(feature = "rayon"))]
-fn for_each(
+pub(super) fn for_each(
     chunks: &[usize],
     _threads: Option<usize>,
     work: &(impl Fn(usize) -> ControlFlow<Result<(), JournalError>> + Sync),

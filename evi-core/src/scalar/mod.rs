@@ -126,9 +126,7 @@ mod lanes;
 mod tangent;
 
 #[cfg(feature = "std")]
-pub use instruction_set::InstructionSet;
-#[cfg(feature = "std")]
-pub(crate) use instruction_set::LaneOperation;
+pub use instruction_set::{InstructionSet, LaneOperation};
 pub use lanes::{LANES, Lanes};
 pub(crate) use tangent::Tangent;
 
