@@ -1,7 +1,7 @@
 //! Solvers of other projects solve the same problems: certified digits, each of their steps shown, errors with their numbers.
 
 use evi_benches::external::{
-    DiffsolError, DiffsolMethod, Dop853Error, HeyokaError, Tolerances, diffsol, dop853, heyoka,
+    DiffsolError, DiffsolMethod, Dop853Error, PeerError, Tolerances, diffsol, dop853, heyoka,
 };
 use evi_core::comparison::Solver;
 use evi_core::prelude::*;
@@ -100,14 +100,14 @@ fn heyoka_reaches_certified_digits_where_it_is_installed() {
     let Start { q, v } = PENDULUM.at_angles(0.1, 0.1);
     let end = DOUBLE_PENDULUM_MILD[1];
     match heyoka("double_pendulum", &PENDULUM, (&q, &v), end.t, &[1e-8, 1e-15], 3) {
-        Err(error @ HeyokaError::NotInstalled { .. }) => println!("{error}"),
+        Err(error @ PeerError::NotInstalled { .. }) => println!("{error}"),
         Err(error) => panic!("{error}"),
         Ok(rows) => {
             let distances: Vec<f64> = rows.iter().map(|row| largest_difference(&row.q, end.q)).collect();
             println!("{distances:?}, {:?} steps", rows.iter().map(|row| row.steps).collect::<Vec<_>>());
             assert!(rows.len() == 2 && distances[0] <= 1e-6 && distances[1] <= 1e-11);
             let unknown = heyoka("perpetuum_mobile", &PENDULUM, (&q, &v), 1.0, &[1e-8], 1);
-            assert!(matches!(unknown, Err(HeyokaError::UnknownScene { .. })), "{unknown:?}");
+            assert!(matches!(unknown, Err(PeerError::UnknownScene { .. })), "{unknown:?}");
         }
     }
 }

@@ -8,7 +8,7 @@ use evi_examples::{ReferenceOrigin, Scene, Visitor};
 use super::measure::Outcome;
 use super::methods::{self, Method, MethodFacts};
 use super::{Motion, Refusal};
-use crate::external::{HeyokaError, HeyokaRow, heyoka};
+use crate::external::{HeyokaRow, PeerError, heyoka};
 
 /// A scene of the gallery, with every method.
 pub trait AnyScene {
@@ -192,9 +192,9 @@ impl<S: Scene> AnyScene for Typed<S> {
 const REPETITIONS: u32 = 20;
 
 /// A program that is not there is no failure of the comparison.
-fn refused(error: HeyokaError) -> Failure {
+fn refused(error: PeerError) -> Failure {
     match error {
-        HeyokaError::NotInstalled { .. } | HeyokaError::UnknownScene { .. } => {
+        PeerError::NotInstalled { .. } | PeerError::UnknownScene { .. } => {
             Refusal::NotRun { reason: error.to_string() }.into()
         }
         error => error.into(),

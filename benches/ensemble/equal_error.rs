@@ -4,7 +4,7 @@ use std::error::Error;
 use std::fmt::Write;
 use std::time::Instant;
 
-use evi_benches::external::{BatchRow, HeyokaError, heyoka_batch};
+use evi_benches::external::{BatchRow, PeerError, heyoka_batch};
 use evi_core::ensemble::{ByIndex, Ends, Ensemble, LaneScheme, Member};
 use evi_core::prelude::*;
 use evi_examples::DoublePendulum;
@@ -74,7 +74,7 @@ pub(crate) fn all(quick: bool) -> Result<Vec<Row>, Box<dyn Error>> {
             median_error: error(ends),
             trajectories_per_second: count as f64 / (1e-6 * microseconds),
         })),
-        Err(error @ HeyokaError::NotInstalled { .. }) => println!("{error}"),
+        Err(error @ PeerError::NotInstalled { .. }) => println!("{error}"),
         Err(error) => return Err(error.into()),
     }
     let mut fastest = |method: &str,

@@ -12,7 +12,7 @@ use super::Tolerances;
 use super::index_one::{IndexOne, split};
 
 /// Steps after which one call gives up.
-const MOST_STEPS: u32 = 1_000_000;
+pub(super) const MOST_STEPS: u32 = 1_000_000;
 
 /// A run of DOP853 that ended early.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -87,6 +87,14 @@ pub fn dop853<S: MechanicalSystem + 'static>(
     by_size!(1 2 3 4 5 6 7 8 9 10 11 12)
 }
 
+/// Hairer's constants for the choice of steps.
+pub(super) const SAFETY: f64 = 0.9;
+pub(super) const BETA: f64 = 0.0;
+pub(super) const SMALLEST_FACTOR: f64 = 0.333;
+pub(super) const LARGEST_FACTOR: f64 = 6.0;
+/// A test would end the run.
+pub(super) const NO_STIFFNESS_TEST: u32 = u32::MAX;
+
 /// A vector that `ode_solvers` integrates.
 trait Integrated: Sized + 'static {
     fn from_fn(len: usize, component: impl FnMut(usize) -> f64) -> Self;
@@ -136,12 +144,6 @@ macro_rules! integrated {
                 equations: &IndexOne<S>,
                 Span { t, target, first_step, tolerances: Tolerances { relative, absolute } }: Span,
             ) -> (SolverResult<f64, Self>, Result<(), IntegrationError>) {
-                // Hairer's constants; no output between steps.
-                const SAFETY: f64 = 0.9;
-                const BETA: f64 = 0.0;
-                const SMALLEST_FACTOR: f64 = 0.333;
-                const LARGEST_FACTOR: f64 = 6.0;
-                const NO_STIFFNESS_TEST: u32 = u32::MAX;
                 let mut method = ode_solvers::Dop853::from_param(
                     RightSide(equations),
                     t,

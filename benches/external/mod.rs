@@ -4,16 +4,24 @@
 //! A general solver takes `q̇ = v`, `v̇ = a(t, q, v)` with the accelerations of the index-1 equations: constraints are
 //! differentiated twice and drift within its tolerance.
 
+mod chain_angles;
 mod diffsol;
 mod dop853;
 mod heyoka;
 mod heyoka_batch;
 mod index_one;
+mod mujoco;
+mod python;
+mod rapier;
 
+pub use chain_angles::{AnglesRow, dop853_chain_20};
 pub use diffsol::{DiffsolError, DiffsolMethod, diffsol};
 pub use dop853::{Dop853Error, dop853};
-pub use heyoka::{HeyokaError, HeyokaRow, heyoka};
+pub use heyoka::{HeyokaRow, heyoka};
 pub use heyoka_batch::{BatchRow, heyoka_batch};
+pub use mujoco::{MujocoRow, mujoco_chain};
+pub use python::PeerError;
+pub use rapier::{NotBuilt, rapier_chain};
 
 /// What the error of a step of size `h` may be, in every component `y`: `absolute + relative · |y|`.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,6 +2,7 @@
 //! progress bar that Ctrl-C ends.
 
 pub mod files;
+pub mod instructions;
 pub mod machine;
 pub mod progress;
 

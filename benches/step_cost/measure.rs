@@ -1,7 +1,8 @@
 //! Times, instructions, corrections and constraint errors of the paths.
 
-use std::process::Command;
 use std::time::Instant;
+
+use evi_benches::program::instructions;
 
 use crate::paths::{Observed, Path};
 
@@ -46,7 +47,9 @@ pub(crate) fn all(paths: &[Path], effort: Effort) -> Vec<Cost> {
             is_standard: path.is_standard,
             nanoseconds: fastest,
             spread: median - fastest,
-            instructions: instructions(index, effort),
+            instructions: instructions::per_step(effort.counted_steps, |steps| {
+                vec!["--counted".to_owned(), index.to_string(), steps.to_string()]
+            }),
             observed: (path.observe)(effort.timed_steps),
         })
         .collect()
@@ -73,21 +76,4 @@ fn times(paths: &[Path], effort: Effort) -> Vec<Times> {
         Times { fastest: samples[0], median: samples[samples.len() / 2] }
     };
     samples.into_iter().map(times).collect()
-}
-
-/// Instructions of one step, counted by valgrind's callgrind: the program runs itself with N and with 3N steps, and the difference is
-/// what 2N steps execute.
-fn instructions(path: usize, effort: Effort) -> Option<f64> {
-    let count = |steps: u64| -> Option<f64> {
-        let output = Command::new("valgrind")
-            .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
-            .arg(std::env::current_exe().ok()?)
-            .args(["--counted", &path.to_string(), &steps.to_string()])
-            .output()
-            .ok()?;
-        let report = String::from_utf8(output.stderr).ok()?;
-        report.split("Collected :").nth(1)?.split_whitespace().next()?.parse().ok()
-    };
-    let steps = effort.counted_steps;
-    Some((count(3 * steps)? - count(steps)?) / (2 * steps) as f64)
 }

@@ -29,6 +29,8 @@ fn a_step_back_undoes_a_step() {
     check_returns(charged, charged.one_radian(), Galerkin::<3>::new, 0.02);
     let bead = RelativisticBead::STANDARD;
     check_returns(bead, RelativisticBead::at_angle(1.0, -2.0), Galerkin::<3>::new, 0.02);
+    let crank = SliderCrank::STANDARD;
+    check_returns(crank, crank.stretched_out(5.0), Galerkin::<3>::new, 0.01);
     let moving = KapitzaPendulum::STANDARD;
     check_returns(moving, moving.near_inverted(), Galerkin::<3>::new, 0.002);
 }

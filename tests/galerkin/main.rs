@@ -13,6 +13,7 @@ use evi_tests::galerkin::GalerkinAction;
 use evi_tests::motions::{
     Motion, charged_spherical_pendulum, damped_pendulum, gentle_double_pendulum, kapitza_pendulum,
     long_charged_spherical_pendulum, long_double_pendulum_in_angles, modulated_pendulum, relativistic_bead,
+    slider_crank,
 };
 use evi_tests::references::{self, Certified};
 use evi_tests::scenes::{

@@ -35,6 +35,13 @@ fn configuration_dependent_mass() {
 }
 
 #[test]
+fn configuration_dependent_mass_with_constraints() {
+    check_orders(&slider_crank(), 20, Galerkin::<2>::new, 4.0);
+    check_orders(&slider_crank(), 20, Galerkin::<3>::new, 6.0);
+    check_orders(&slider_crank(), 20, Galerkin::<4>::new, 8.0);
+}
+
+#[test]
 fn gyroscopic_coupling_with_a_constraint() {
     check_orders(&charged_spherical_pendulum(), 4, Galerkin::<3>::new, 6.0);
     check_orders(&charged_spherical_pendulum(), 4, |h| Galerkin::<2>::new(h).frequency(2.0), 4.0);

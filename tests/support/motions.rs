@@ -6,7 +6,7 @@
 use evi_core::array::Array;
 use evi_core::mechanics::Mechanics;
 use evi_core::prelude::*;
-use evi_examples::{DoublePendulum, GRAVITY, Pendulum, Start};
+use evi_examples::{DoublePendulum, GRAVITY, Pendulum, Reference, Scene, SliderCrank, Start};
 
 use crate::extrapolate_by_hand;
 use crate::references::{self, Certified};
@@ -190,4 +190,11 @@ pub fn relativistic_bead() -> Motion<RelativisticBead> {
 pub fn kapitza_pendulum() -> Motion<KapitzaPendulum> {
     let system = KapitzaPendulum::STANDARD;
     Motion::certified(system, system.near_inverted(), references::RHEONOMIC_PENDULUM, 400).without_energy()
+}
+
+/// A mechanism whose mass matrix depends on its configuration, with constraints: three turns of the gallery's slider-crank.
+pub fn slider_crank() -> Motion<SliderCrank> {
+    let system = SliderCrank::STANDARD;
+    let Reference { q, v, .. } = SliderCrank::reference();
+    Motion::new(system, system.stretched_out(15.0), SliderCrank::HORIZON, (&q, &v), 40)
 }
