@@ -49,7 +49,7 @@ pub use matrix_evi::{
     LinearisedAlong, LinearisedAt, MatrixEvi, MatrixEviStep, QuadraticModel, StepMode, Stiffness,
 };
 #[cfg(feature = "std")]
-pub(crate) use multipliers::MultiplierStep;
+pub(crate) use multipliers::{MultiplierStep, TRUSTED};
 pub use of_rank::OfRank;
 #[cfg(feature = "std")]
 pub use proposal::{LONGEST_TRIAL, Member, PASSES_OF_NEWTON, Proposal, ProposalError, propose};
@@ -57,6 +57,8 @@ pub use rescue::{Rescued, RescuedStep, Rescues};
 pub use run::Run;
 #[cfg(feature = "std")]
 pub(crate) use run::steps_between;
+#[cfg(feature = "std")]
+pub(crate) use simulation::consistent_start;
 pub use simulation::{ConstraintLabel, Simulation, StartError};
 #[cfg(feature = "std")]
 pub use trajectory::{Interrupted, Trajectory};

@@ -93,6 +93,19 @@ impl<S: MechanicalSystem, F: Interpolant<S>> FoldedStep<S, F> {
     }
 }
 
+#[cfg(feature = "std")]
+impl<S: MechanicalSystem, F> FoldedStep<S, F> {
+    /// `−B` and `−a`.
+    pub(crate) const fn start_kick(&self) -> (&CoordinateMatrix<S>, &S::PerCoordinate<f64>) {
+        (&self.start_kick.linear, &self.start_kick.constant)
+    }
+
+    /// `E` and `c`.
+    pub(crate) const fn end_kick(&self) -> (&CoordinateMatrix<S>, &S::PerCoordinate<f64>) {
+        (&self.end_kick.linear, &self.end_kick.constant)
+    }
+}
+
 impl<S: MechanicalSystem, F: Interpolant<S>> KickDriftKick<S> for FoldedStep<S, F> {
     type Coupling = AsScene;
 

@@ -31,6 +31,12 @@ impl<S: MechanicalSystem> LeapfrogStep<S> {
         Ok(Self { half_h: 0.5 * h, drift, legendre: ConstantLegendre::new(mechanics)? })
     }
 
+    /// `½h`.
+    #[cfg(feature = "std")]
+    pub(crate) const fn half_h(&self) -> f64 {
+        self.half_h
+    }
+
     /// `p + ½h ∂L/∂q`, which does not depend on the velocity.
     #[inline(always)]
     fn kicked(

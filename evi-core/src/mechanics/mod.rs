@@ -55,6 +55,8 @@ pub(crate) use kick_drift_kick::KickDriftKick;
 pub(crate) use lane_step::{FirstGuess, LaneEnd, LaneStep, Passes, product, reach};
 pub(crate) use leapfrog_step::LeapfrogStep;
 pub(crate) use legendre::ConstantLegendre;
+#[cfg(feature = "std")]
+pub(crate) use legendre::LARGEST_REST;
 pub use linearisation::Linearisation;
 pub(crate) use matrix_action::MatrixAction;
 pub(crate) use modes::Modes;

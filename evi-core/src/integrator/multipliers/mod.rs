@@ -12,6 +12,8 @@ mod span;
 use core::borrow::Borrow;
 
 use self::attempt::Attempt;
+#[cfg(feature = "std")]
+pub(crate) use self::attempt::TRUSTED;
 use self::history::History;
 use self::span::{Span, move_by};
 use super::StepError;
