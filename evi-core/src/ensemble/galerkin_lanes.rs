@@ -12,7 +12,7 @@ use super::mask::LaneMask;
 use super::projection::project;
 use crate::integrator::{Galerkin, Symmetric};
 use crate::linear::Cholesky;
-use crate::mechanics::{AsScene, ConstantLegendre, Mechanics, State};
+use crate::mechanics::{AsMass, ConstantLegendre, Mechanics, State};
 use crate::newton;
 use crate::scalar::{LANES, Lanes, Scalar};
 use crate::scheme::{Columns, LaneTables, Linear, PAST, SchemeError, checked_step_size};
@@ -157,9 +157,9 @@ impl<S: MechanicalSystem, const K: usize> LaneScheme<S> for Galerkin<K, Linear> 
             slopes: Slopes::new(side_by_side(|lane, i| mechanics[lane].constants[i])),
             legendre: LaneLegendre::of(members.map(|member| &member.legendre)),
             units: side_by_side(|lane, i| members[lane].units[i]),
-            grams: (0..K).map(|_| LaneLu::new::<AsScene>()).collect(),
+            grams: (0..K).map(|_| LaneLu::new::<AsMass>()).collect(),
             jacobians: vec![nothing(); K],
-            gram: LaneLu::new::<AsScene>(),
+            gram: LaneLu::new::<AsMass>(),
             past: core::array::from_fn(|_| vec![start.clone(); K]),
             accelerations: points(),
             forces: points(),

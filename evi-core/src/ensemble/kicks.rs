@@ -4,7 +4,7 @@
 
 use super::lane_matrix::LaneMatrix;
 use super::lane_state::{nothing, side_by_side};
-use crate::mechanics::{AsScene, ConstantLegendre, FoldedStep, KickDriftKick, LeapfrogStep};
+use crate::mechanics::{AsMass, AsScene, ConstantLegendre, FoldedStep, KickDriftKick, LeapfrogStep};
 use crate::scalar::{LANES, Lanes};
 use crate::scheme::Interpolant;
 use crate::system::MechanicalSystem;
@@ -12,7 +12,7 @@ use crate::system::MechanicalSystem;
 /// A step without its constraint forces, `p½ = p₀ + k₀`, `q₁ = q₀ + D p½`, `p⁻ = p½ + k₁`, of eight members.
 pub(super) trait LaneKicks<S: MechanicalSystem> {
     /// What it is made of, per member.
-    type Member: KickDriftKick<S, Coupling = AsScene>;
+    type Member: KickDriftKick<S>;
 
     /// The steps of eight members.
     fn of(members: [&Self::Member; LANES]) -> Self;
@@ -175,7 +175,7 @@ impl<S: MechanicalSystem> LaneKicks<S> for LeapfrogLanes<S> {
 
 /// The Legendre transforms `v = M⁻¹ (p − a)` of eight members with constant masses.
 pub(super) struct LaneLegendre<S: MechanicalSystem> {
-    pub(super) inverse_mass: LaneMatrix<S, AsScene>,
+    pub(super) inverse_mass: LaneMatrix<S, AsMass>,
     momentum_at_rest: S::PerCoordinate<Lanes>,
 }
 

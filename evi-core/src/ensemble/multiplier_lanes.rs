@@ -11,17 +11,17 @@ use super::lane_state::{LaneState, blend, nothing, side_by_side};
 use super::mask::LaneMask;
 use super::projection::project;
 use crate::integrator::TRUSTED;
-use crate::mechanics::{AsScene, KickDriftKick, Mechanics, State};
+use crate::mechanics::{AsMass, KickDriftKick, Mechanics, State};
 use crate::newton;
 use crate::scalar::{InstructionSet, LANES, LaneOperation, Lanes, Scalar};
 use crate::system::MechanicalSystem;
 
 /// The step of eight members, with the impulses that they have needed so far.
-pub(super) struct MultiplierLanes<S: MechanicalSystem, K> {
+pub(super) struct MultiplierLanes<S: MechanicalSystem, K: LaneKicks<S>> {
     h: f64,
     slopes: Slopes<S>,
     kicks: K,
-    drift: LaneMatrix<S, AsScene>,
+    drift: LaneMatrix<S, Drift<S, K>>,
     legendre: LaneLegendre<S>,
     /// `G₁ D G₀ᵀ`.
     chord: LaneLu<S>,
@@ -33,6 +33,9 @@ pub(super) struct MultiplierLanes<S: MechanicalSystem, K> {
     previous: [S::PerConstraint<Lanes>; 3],
     instructions: InstructionSet,
 }
+
+/// What the drift of a step couples.
+type Drift<S, K> = <<K as LaneKicks<S>>::Member as KickDriftKick<S>>::Coupling;
 
 /// Eight steps as functions of their impulses.
 struct Span<S: MechanicalSystem> {
@@ -62,8 +65,8 @@ impl<S: MechanicalSystem, K: LaneKicks<S>> MultiplierLanes<S, K> {
             kicks: K::of(members),
             drift: LaneMatrix::of(members.map(|member| member.drift())),
             legendre: LaneLegendre::of(members.map(|member| member.legendre())),
-            chord: LaneLu::new::<AsScene>(),
-            gram: LaneLu::new::<AsScene>(),
+            chord: LaneLu::new::<Drift<S, K>>(),
+            gram: LaneLu::new::<AsMass>(),
             predicted: nothing(),
             previous: core::array::from_fn(|_| nothing()),
             instructions: InstructionSet::detect(),
@@ -224,7 +227,7 @@ impl<S: MechanicalSystem, K: LaneKicks<S>> MultiplierLanes<S, K> {
 }
 
 /// Newton's iteration, as an operation on lanes.
-struct Iterate<'a, S: MechanicalSystem, K> {
+struct Iterate<'a, S: MechanicalSystem, K: LaneKicks<S>> {
     map: &'a mut MultiplierLanes<S, K>,
     span: &'a Span<S>,
     ends: &'a mut Ends<S>,

@@ -150,7 +150,8 @@ impl<S: MechanicalSystem, const K: usize, F: Interpolant<S>> Scheme<S> for Evi<K
         };
         let legendre =
             if ConstantLegendre::<S>::EXISTS { ConstantLegendre::new(&action.mechanics).ok() } else { None };
-        let (folded, leapfrog) = (folded.map(MultiplierStep::new), leapfrog.map(MultiplierStep::new));
+        let folded = folded.map(|free| MultiplierStep::new(&action.mechanics, free));
+        let leapfrog = leapfrog.map(|free| MultiplierStep::new(&action.mechanics, free));
         Ok(EviStep { action, frequencies, folded, leapfrog, legendre, sags: Sags::none() })
     }
 }

@@ -41,7 +41,7 @@ pub(crate) use constraint_rank::CONSISTENCY;
 pub use constraint_rank::{ConstraintRank, ConstraintSet};
 pub(crate) use constraints::{Directions, NOTHING};
 pub(crate) use coordinate_matrix::{CoordinateMatrix, Rows};
-pub(crate) use coupling::{AsScene, Coupling, Full};
+pub(crate) use coupling::{AsMass, AsScene, Coupling, Full};
 pub(crate) use folded_step::FoldedStep;
 pub(crate) use forces::{ForceDerivatives, ForcePoint};
 #[cfg(feature = "std")]

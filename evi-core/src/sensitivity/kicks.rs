@@ -31,11 +31,12 @@ pub(super) fn note_kicks<S: MechanicalSystem, F: KickDriftKick<S>>(
     let mut removed = Array::from_fn(|_| 0.0);
     if S::N_CONSTRAINTS > 0 {
         let free = step.free();
-        let mut momentum = free.kicked_at_start(mechanics, start.t, &start.q, &start.p);
+        let kick = free.start_kick(mechanics, start.t, &start.q);
+        let mut momentum = S::PerCoordinate::<f64>::from_fn(|i| start.p[i] + kick[i]);
         let (_, jacobian) = S::constraint_derivatives(&mechanics.constants, start.t, &start.q);
         mechanics.subtract_constraint_force(jacobian.as_ref(), impulse.as_ref(), momentum.as_mut());
-        let arriving = free.kicked_at_end(mechanics, end.t, &end.q, &momentum);
-        let balance = Array::from_fn(|i| arriving[i] - end.p[i]);
+        let kick = free.end_kick(mechanics, end.t, &end.q);
+        let balance = Array::from_fn(|i| momentum[i] + kick[i] - end.p[i]);
         removed = Landing::new(mechanics, Some(free.legendre()), end)?.impulse(&balance);
     }
     Ok(TakenStep { start, end: end.clone(), differences, impulses: [impulse], removed })
