@@ -109,7 +109,7 @@ impl<F, X, G> Motion<'_, F, X, G> {
         gathered
     }
 
-    #[expect(clippy::type_complexity, reason = "a start, and what it brings into lanes")]
+    /// A start, and what it brings into lanes.
     fn start<S: MechanicalSystem>(
         &self,
         members: &impl Members<S>,

@@ -23,9 +23,10 @@ pub(super) enum Kind<A, B> {
 pub struct EviMember<S: MechanicalSystem, F>(Kind<FoldedStep<S, F>, LeapfrogStep<S>>);
 
 /// The steps of eight members of an [`Evi`] ensemble.
-pub struct EviLanes<S: MechanicalSystem, F: Interpolant<S>>(
-    Kind<MultiplierLanes<S, FoldedLanes<S, F>>, MultiplierLanes<S, LeapfrogLanes<S>>>,
-);
+pub struct EviLanes<S: MechanicalSystem, F: Interpolant<S>>(Kind<Folded<S, F>, Leapfrog<S>>);
+
+type Folded<S, F> = MultiplierLanes<S, FoldedLanes<S, F>>;
+type Leapfrog<S> = MultiplierLanes<S, LeapfrogLanes<S>>;
 
 impl<S: MechanicalSystem, const K: usize, F: Interpolant<S> + Clone> LaneScheme<S> for Evi<K, F> {
     type Member = EviMember<S, F>;

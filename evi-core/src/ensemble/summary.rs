@@ -9,8 +9,10 @@ use crate::system::MechanicalSystem;
 pub struct Quantity<S: MechanicalSystem> {
     name: String,
     bins: Bins,
-    value: Box<dyn Fn(&Sight<'_, S>) -> f64 + Sync>,
+    value: Box<Value<S>>,
 }
+
+type Value<S> = dyn Fn(&Sight<'_, S>) -> f64 + Sync;
 
 /// The bins of a histogram: equal, from `low` to `high`.
 #[derive(Clone, Copy, Debug, PartialEq)]
