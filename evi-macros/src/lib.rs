@@ -40,7 +40,7 @@ mod tests;
 /// | `lagrangian = EXPR`, or `kinetic = EXPR, potential = EXPR` | `L(t, q, v)`, or `L = T − V` |
 /// | `constraint(NAME: LHS == RHS)` | the holonomic constraint `φ = LHS − RHS = 0`; an equation of vectors stands for its elements |
 /// | `constraint(NAME[i in 1..N]: LHS == RHS)` | a constraint for every `i`; also by two indices, `NAME[i in 0..M, j in 1..M]` |
-/// | `rigid_body(NAME, mass = .., center = [..], inertia = [..])` | a body in directors: the array `NAME: [4, 3]` of the position and three axes, six constraints, kinetic energy; its points are `NAME.point([..])` |
+/// | `rigid_body(NAME, mass = .., center = [..], inertia = [..])` | a body in directors: the array `NAME: [4, 3]` of the position and three axes, six constraints, kinetic energy; the moments of inertia are those about the centre of mass, of which the axes are principal; its points are `NAME.point([..])` |
 /// | `let NAME = EXPR` | a shared subexpression, usable below |
 /// | `dissipation = EXPR` | Rayleigh's function `D(t, q, v)`: the force `−∂D/∂v` |
 /// | `force(COORDINATE: EXPR)` | a generalized force on a coordinate, of `t, q, v` and inputs |

@@ -38,8 +38,8 @@ struct Top {
     l: f64,
 }
 
-/// Both have the same operations up to the order of sums of at most ten terms of size 10.
-const ROUND_OFF: f64 = 1e-13;
+/// The generic copy is not simplified: sums of ten terms of size 10 in another order; no difference measured, one rounding allowed.
+const ROUND_OFF: f64 = 2e-15;
 
 #[test]
 fn a_chain_of_arrays_is_the_chain_of_numbers() {
@@ -48,8 +48,8 @@ fn a_chain_of_arrays_is_the_chain_of_numbers() {
     let at = Point::irregular(10);
     let (a, b) = (Kernels::of(&by_arrays, &at), Kernels::of(&by_numbers, &at));
     assert!(b.jacobian.amax() > 0.1 && b.lagrangian.abs() > 0.1, "{b:?}");
-    let distance = a.distance(&b);
-    assert!(distance <= ROUND_OFF, "{distance:e}");
+    // Vectors are taken apart before anything else: the same operations, hence the same bits.
+    assert!(a.distance(&b) == 0.0, "{:e}", a.distance(&b));
     assert_eq!(Chain::COORDINATES[..3], ["p[0, 0]", "p[0, 1]", "p[1, 0]"]);
     assert_eq!(Chain::CONSTRAINTS, ["first", "link[1]", "link[2]", "link[3]", "link[4]"]);
     // The same pattern in the same places, and the same solvers behind it.
@@ -74,6 +74,6 @@ fn directors_in_an_array_are_a_heavy_top() {
     let by_arrays = Top { tensor: [across, across, along], m, g, l };
     let at = Point::irregular(9);
     let distance = Kernels::of(&by_arrays, &at).distance(&Kernels::of(&HeavyTop::STANDARD, &at));
-    assert!(distance <= ROUND_OFF, "{distance:e}");
+    assert!(distance == 0.0, "the same operations have the same bits: {distance:e}");
     assert_eq!(Top::PARAMETERS, ["tensor[0]", "tensor[1]", "tensor[2]", "m", "g", "l"]);
 }

@@ -141,7 +141,9 @@ impl Graph {
     pub(crate) fn composite(&mut self, composite: Composite, own: Dependence) -> ExprId {
         let operands = composite.operands().into_iter();
         let dependence = operands.fold(own, |union, operand| union.union(self.dependence(operand)));
-        let known = self.composites.iter().position(|(known, _)| *known == composite);
+        // Sums stay apart, each at its place in the source.
+        let is_sum = matches!(composite, Composite::Sum { .. });
+        let known = self.composites.iter().position(|(known, _)| !is_sum && *known == composite);
         let index = known.unwrap_or_else(|| {
             self.composites.push((composite, dependence));
             self.composites.len() - 1

@@ -3,7 +3,7 @@
 use proc_macro2::{Ident, TokenTree};
 use quote::ToTokens;
 
-use super::expression::is_screaming_case;
+use super::lowering::is_screaming_case;
 use crate::diagnostics::Diagnostics;
 use crate::expr::Affine;
 

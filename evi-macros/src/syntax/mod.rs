@@ -5,11 +5,13 @@
 
 mod affine;
 mod attribute;
+mod elements;
 mod expression;
 mod indexed;
 mod integers;
 mod item;
 mod labelled;
+mod lowering;
 mod nesting;
 mod rigid_body;
 mod shape;

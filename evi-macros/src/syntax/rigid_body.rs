@@ -8,7 +8,7 @@
 //! T = ½ m |ḃ₀ + Σ cₖ ḃₖ|² + ½ Σ Eₖ |ḃₖ|²,   E₁ = ½ (J₂ + J₃ − J₁) and so on (Euler's tensor)
 //! ```
 //!
-//! (P. Betsch, P. Steinmann, Int. J. Numer. Meth. Eng. 51 (2001) 513), whose mass matrix is constant. Six constraints keep the directors
+//! (P. Betsch, S. Leyendecker, Int. J. Numer. Meth. Eng. 67 (2006) 499), whose mass matrix is constant. Six constraints keep the directors
 //! orthonormal.
 
 use proc_macro2::{Delimiter, Ident, Literal, TokenStream, TokenTree};
