@@ -32,7 +32,8 @@
 //!
 //! [`mod@array`], [`scalar`], [`memory`], [`system`] and [`scheme`] stand at the bottom; above them `newton` and [`linear`], then
 //! [`mechanics`] (energies, projections, the equations of one step), then [`integrator`] (one-step maps and runs),
-//! and beside the integrators `assembled` for scenes of many bodies, [`baseline`], [`generic`], [`comparison`], [`report`] and [`watch`]. Imports point downwards.
+//! and beside the integrators `assembled` for scenes of many bodies, [`baseline`], [`generic`], [`comparison`], [`report`] and
+//! [`watch`]. Imports point downwards.
 //!
 //! # Features
 //!
@@ -43,6 +44,7 @@
 //! | `derive` | yes | re-exports `#[derive(MechanicalSystem)]` |
 //! | `serde` | no | [`integrator::Checkpoint`] can be serialised |
 //! | `source` | no | [`system::MechanicalSystem::SOURCE`] holds the generated code, to read |
+//! | `sparse` | no | `assembled` scenes whose bodies hold each other in large nets: elimination with pivoting by faer |
 //! | `generic` | no | `generic::GenericEvi` for systems of run-time size; [`scalar::Scalar`] for the dual numbers of num-dual |
 
 #![cfg_attr(not(feature = "std"), no_std)]
