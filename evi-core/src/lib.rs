@@ -47,6 +47,7 @@
 //! | `parquet` | no | [`columns::Table::save`] writes Parquet |
 //! | `mpi` | no | ensembles on several processes, by the MPI of the system |
 //! | `source` | no | [`system::MechanicalSystem::SOURCE`] holds the generated code, to read |
+//! | `sparse` | no | `assembled` scenes whose bodies hold each other in large nets: elimination with pivoting by faer |
 //! | `generic` | no | `generic::GenericEvi` for systems of run-time size; [`scalar::Scalar`] for the dual numbers of num-dual |
 
 #![cfg_attr(not(feature = "std"), no_std)]

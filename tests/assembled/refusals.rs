@@ -1,6 +1,7 @@
 //! Starts that are refused by name, and steps that fail where they stand.
 
 use evi_core::assembled::{AssembledSimulation, AssemblyError};
+use evi_core::integrator::Statistics;
 use evi_core::prelude::*;
 
 use evi_tests::trusses::{Placed, Truss, chain, ring};
@@ -84,4 +85,33 @@ fn a_step_without_solution_leaves_the_run_where_it_stands() {
             assert_eq!((run.state(), run.steps()), (&before, 0));
         }
     }
+}
+
+#[test]
+fn nets_that_fill_in_too_much_are_refused_with_the_feature_that_takes_them() {
+    let n = 120;
+    let every_pair = (0..n).flat_map(|a| (0..a).map(move |b| ([b, a], 1.0))).collect();
+    let truss = Truss { masses: vec![1.0; n], rods: every_pair, ..Truss::default() };
+    let error = refused(truss, vec![0.0; 2 * n], vec![0.0; 2 * n]);
+    assert!(matches!(error, AssemblyError::TooMuchFill { unknowns: 7380, .. }), "{error}");
+    assert!(error.to_string().contains("feature `sparse`"), "{error}");
+}
+
+#[test]
+fn steps_that_fail_are_taken_in_parts_where_that_is_asked_for() {
+    // Links whip around faster than steps of this size resolve.
+    let Placed { truss, q } = chain(10);
+    let rest = vec![0.0; q.len()];
+    let plain = AssembledSimulation::new(truss.clone(), Evi::midpoint(0.02));
+    let error = plain.start(q.clone(), rest.clone()).expect("a start").advance_to(4.0).err();
+    assert!(matches!(error, Some(StepError::NoSolution { .. } | StepError::Singular { .. })), "{error:?}");
+    let rescued = AssembledSimulation::new(truss, Evi::midpoint(0.02).rescued::<6>());
+    let mut run = rescued.start(q, rest).expect("a start").with_tally(Statistics::default());
+    run.advance_to(4.0).expect("every step");
+    let rescues = run.map().rescues();
+    println!("{rescues:?}, of {} steps", run.steps());
+    assert_eq!(run.steps(), 200);
+    assert!(rescues.steps > 0 && rescues.parts >= 2 * rescues.steps);
+    assert_eq!(run.tally().rescued_steps, rescues.steps);
+    assert!(run.constraint_error() < 1e-15 && (run.state().t() - 4.0).abs() < 1e-12);
 }

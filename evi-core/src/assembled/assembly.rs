@@ -73,6 +73,11 @@ impl Traits {
         !(self.force_is_on_q || self.force_is_on_v || self.force_is_on_t)
     }
 
+    /// Whether they change while the nodes of a step are sought.
+    pub(super) const fn force_varies(&self) -> bool {
+        self.force_is_on_q || self.force_is_on_v
+    }
+
     fn and(self, element: &Structure) -> Self {
         let on = element.forces.on;
         Self {
@@ -225,6 +230,20 @@ impl Assembly {
             let values = &mut values[family.rows.clone()];
             let slopes = &mut slopes[family.slopes.clone()];
             family.elements.lane_constraint_derivatives(instructions, t, q, values, slopes);
+        }
+    }
+
+    /// Subtracts `Gᵀ x` from `force` at a node per lane.
+    pub(super) fn subtract_lane_pull(
+        &self,
+        instructions: InstructionSet,
+        t: Lanes,
+        q: &[Lanes],
+        x: &[Lanes],
+        force: &mut [Lanes],
+    ) {
+        for family in self.families.iter().filter(|family| !family.rows.is_empty()) {
+            family.elements.subtract_lane_pull(instructions, t, q, &x[family.rows.clone()], force);
         }
     }
 

@@ -84,6 +84,16 @@ pub(super) trait Elements {
         values: &mut [Lanes],
         slopes: &mut [Lanes],
     );
+
+    /// Subtracts `Gᵀ x` from `force` at a node per lane.
+    fn subtract_lane_pull(
+        &self,
+        instructions: InstructionSet,
+        t: Lanes,
+        q: &[Lanes],
+        x: &[Lanes],
+        force: &mut [Lanes],
+    );
 }
 
 /// What second derivatives are multiplied with.
@@ -256,6 +266,26 @@ fn constraint_derivatives<E: MechanicalSystem, T: Scalar>(
     }
 }
 
+/// Subtracts `Gᵀ x` of all elements.
+#[inline(always)]
+fn subtract_pull<E: MechanicalSystem, const FUSED: bool>(
+    elements: &[Element<E>],
+    (t, q): (Lanes, &[Lanes]),
+    x: &[Lanes],
+    force: &mut [Lanes],
+) {
+    for (index, element) in elements.iter().enumerate() {
+        let constants = element.constants();
+        let (_, varying) = E::constraint_derivatives(&constants, t, &element.gather(q));
+        let first = index * E::N_CONSTRAINTS;
+        for entry in E::STRUCTURE.jacobian.q {
+            let slope = entry.value(constants.as_ref(), varying.as_ref());
+            let place = element.places[entry.col] as usize;
+            force[place] = (-slope).times_plus::<FUSED>(x[first + entry.row], force[place]);
+        }
+    }
+}
+
 impl<E: MechanicalSystem> Elements for Repeated<E> {
     fn structure(&self) -> &'static Structure {
         &E::STRUCTURE
@@ -408,6 +438,34 @@ impl<E: MechanicalSystem> Elements for Repeated<E> {
     ) {
         let slopes = Some(slopes);
         instructions.run(Constraints { elements: &self.elements, at: (t, q), values, slopes });
+    }
+
+    fn subtract_lane_pull(
+        &self,
+        instructions: InstructionSet,
+        t: Lanes,
+        q: &[Lanes],
+        x: &[Lanes],
+        force: &mut [Lanes],
+    ) {
+        instructions.run(SubtractPull { elements: &self.elements, at: (t, q), x, force });
+    }
+}
+
+/// The pull of the constraints of all elements, as an operation on lanes.
+struct SubtractPull<'a, E: MechanicalSystem> {
+    elements: &'a [Element<E>],
+    at: (Lanes, &'a [Lanes]),
+    x: &'a [Lanes],
+    force: &'a mut [Lanes],
+}
+
+impl<E: MechanicalSystem> LaneOperation for SubtractPull<'_, E> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        subtract_pull::<E, FUSED>(self.elements, self.at, self.x, self.force);
     }
 }
 

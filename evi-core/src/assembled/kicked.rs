@@ -182,7 +182,7 @@ impl KickedStep {
         let Space { q, p, pull, moved, impulse, rates, at_start, at_end, .. } = space;
         pull.copy_from_slice(p);
         subtract_pull::<f64, false>(&assembly.slots, &at_start.slopes, impulse, pull);
-        mass.inverse_times::<f64, false>(pull, moved);
+        mass.inverse_times(pull, moved);
         let mut reach = 0.0_f64;
         for (i, q) in q.iter_mut().enumerate() {
             let difference = h * moved[i];
@@ -213,7 +213,7 @@ impl KickedStep {
             gram.solve_between(rates);
             pull.fill(0.0);
             subtract_pull::<f64, false>(&assembly.slots, &at_start.slopes, rates, pull);
-            mass.inverse_times::<f64, false>(pull, moved);
+            mass.inverse_times(pull, moved);
             let inverse_h = 1.0 / h;
             impulse.iter_mut().zip(rates.iter()).for_each(|(impulse, rate)| *impulse += inverse_h * rate);
             let mut length = 0.0_f64;

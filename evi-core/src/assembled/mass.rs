@@ -104,22 +104,23 @@ impl ConstantMass {
         }
     }
 
-    /// Overwrites `product` with `M⁻¹ x`.
+    /// Coordinate `i` of `M⁻¹ x`.
     #[inline(always)]
-    pub(super) fn inverse_times<T: Number, const FUSED: bool>(&self, x: &[T], product: &mut [T]) {
+    pub(super) fn inverse_times_at<T: Number, const FUSED: bool>(&self, x: &[T], i: usize) -> T {
         if self.is_diagonal {
-            for ((product, x), value) in product.iter_mut().zip(x).zip(&self.values) {
-                *product = T::from_f64(*value) * *x;
-            }
-            return;
+            return T::from_f64(self.values[i]) * x[i];
         }
-        for (row, product) in product.iter_mut().enumerate() {
-            let mut sum = T::ZERO;
-            for index in self.starts[row] as usize..self.starts[row + 1] as usize {
-                sum =
-                    sum.plus_product::<FUSED>(T::from_f64(self.values[index]), x[self.cols[index] as usize]);
-            }
-            *product = sum;
+        let mut sum = T::ZERO;
+        for index in self.starts[i] as usize..self.starts[i + 1] as usize {
+            sum = sum.plus_product::<FUSED>(T::from_f64(self.values[index]), x[self.cols[index] as usize]);
+        }
+        sum
+    }
+
+    /// Overwrites `product` with `M⁻¹ x`.
+    pub(super) fn inverse_times(&self, x: &[f64], product: &mut [f64]) {
+        for (i, product) in product.iter_mut().enumerate() {
+            *product = self.inverse_times_at::<f64, false>(x, i);
         }
     }
 

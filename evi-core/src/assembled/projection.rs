@@ -41,11 +41,11 @@ fn project_on_constant_mass(assembly: &Assembly, mass: &ConstantMass, gram: &Gra
     let Space { p, v, impulse, rates, at_end, .. } = space;
     mass.subtract_rest(p);
     subtract_pull::<f64, false>(&assembly.slots, &at_end.slopes, impulse, p);
-    mass.inverse_times::<f64, false>(p, v);
+    mass.inverse_times(p, v);
     if assembly.n_constraints > 0 {
         for _ in 0..2 {
             let removed = remove_rest(assembly, gram, at_end, p, v, rates, impulse);
-            mass.inverse_times::<f64, false>(p, v);
+            mass.inverse_times(p, v);
             let doubled_energy: f64 = p.iter().zip(v.iter()).map(|(p, v)| p * v).sum();
             let is_slow = removed > LARGEST_REST * doubled_energy;
             if !is_slow {

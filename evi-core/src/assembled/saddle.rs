@@ -2,18 +2,63 @@
 
 use super::assembly::{Assembly, ConstraintsAt, Point};
 use super::elements::{SecondWeights, for_each_second_derivative};
+#[cfg(feature = "sparse")]
+use super::sparse::Pivoted;
 use super::sparse::{Elimination, General, TooMuchFill};
 use crate::linear::SingularMatrix;
 
-/// The matrix, and where everything goes that is added to it. Constraints are eliminated after their coordinates: the diagonal of a constraint
-/// vanishes until then.
+/// The matrix, and where everything goes that is added to it.
 pub(super) struct Saddle {
-    elimination: Elimination,
-    matrix: General,
+    matrix: SaddleMatrix,
     /// For every family, where the second derivatives of its elements go.
     second_derivatives: Vec<Vec<u32>>,
     /// For every slope, its place below, in `G₁`, and above, in `G₀ᵀ`.
     slopes: Vec<[u32; 2]>,
+}
+
+/// A matrix with its way of elimination.
+enum SaddleMatrix {
+    /// In an order that is found once. Constraints are eliminated after their coordinates: the diagonal of a constraint vanishes until then.
+    Ordered(Elimination, General),
+    /// With pivoting, for nets.
+    #[cfg(feature = "sparse")]
+    Pivoted(Box<Pivoted>),
+}
+
+impl SaddleMatrix {
+    /// For matrices of `n` coordinates and the rest of the unknowns constraints.
+    fn new(
+        (n, n_unknowns): (usize, usize),
+        coupled: impl IntoIterator<Item = (usize, usize)> + Clone,
+    ) -> Result<Self, TooMuchFill> {
+        let ordered = Elimination::new(n_unknowns, coupled.clone(), |unknown| unknown >= n);
+        match ordered {
+            Ok(elimination) => {
+                let matrix = General::zero(&elimination);
+                Ok(Self::Ordered(elimination, matrix))
+            }
+            #[cfg(feature = "sparse")]
+            Err(fill) => Pivoted::new(n_unknowns, coupled).map(Box::new).map(Self::Pivoted).ok_or(fill),
+            #[cfg(not(feature = "sparse"))]
+            Err(fill) => Err(fill),
+        }
+    }
+
+    fn place(&self, row: usize, col: usize) -> u32 {
+        match self {
+            Self::Ordered(elimination, _) => General::place(elimination, row, col),
+            #[cfg(feature = "sparse")]
+            Self::Pivoted(matrix) => matrix.place(row, col),
+        }
+    }
+
+    fn entries_mut(&mut self) -> &mut [f64] {
+        match self {
+            Self::Ordered(_, matrix) => matrix.entries_mut(),
+            #[cfg(feature = "sparse")]
+            Self::Pivoted(matrix) => matrix.entries_mut(),
+        }
+    }
 }
 
 impl Saddle {
@@ -35,12 +80,11 @@ impl Saddle {
         let slots: Vec<(usize, usize)> =
             assembly.slots.iter().map(|slot| (n + slot.row as usize, slot.col as usize)).collect();
         let all = coupled.iter().flatten().chain(&slots).copied();
-        let elimination = Elimination::new(n + assembly.n_constraints, all, |unknown| unknown >= n)?;
-        let place = |row, col| General::place(&elimination, row, col);
-        let second_derivatives =
-            coupled.iter().map(|pairs| pairs.iter().map(|&(row, col)| place(row, col)).collect()).collect();
-        let slopes = slots.iter().map(|&(row, col)| [place(row, col), place(col, row)]).collect();
-        Ok(Self { matrix: General::zero(&elimination), elimination, second_derivatives, slopes })
+        let matrix = SaddleMatrix::new((n, n + assembly.n_constraints), all)?;
+        let place = |&(row, col): &(usize, usize)| matrix.place(row, col);
+        let second_derivatives = coupled.iter().map(|pairs| pairs.iter().map(place).collect()).collect();
+        let slopes = slots.iter().map(|&(row, col)| [place(&(row, col)), place(&(col, row))]).collect();
+        Ok(Self { matrix, second_derivatives, slopes })
     }
 
     /// Overwrites the matrix with zero.
@@ -75,11 +119,19 @@ impl Saddle {
     /// # Errors
     /// [`SingularMatrix`].
     pub(super) fn factor(&mut self) -> Result<f64, SingularMatrix> {
-        self.matrix.factor(&self.elimination)
+        match &mut self.matrix {
+            SaddleMatrix::Ordered(elimination, matrix) => matrix.factor(elimination),
+            #[cfg(feature = "sparse")]
+            SaddleMatrix::Pivoted(matrix) => matrix.factor(),
+        }
     }
 
     /// Overwrites the right-hand side, coordinates first, with the solution.
-    pub(super) fn solve(&self, rhs: &mut [f64]) {
-        self.matrix.solve(&self.elimination, rhs);
+    pub(super) fn solve(&mut self, rhs: &mut [f64]) {
+        match &mut self.matrix {
+            SaddleMatrix::Ordered(elimination, matrix) => matrix.solve(elimination, rhs),
+            #[cfg(feature = "sparse")]
+            SaddleMatrix::Pivoted(matrix) => matrix.solve(rhs),
+        }
     }
 }

@@ -81,17 +81,14 @@ impl PreparedScene {
         let zero = vec![0.0; assembly.n_coordinates];
         let matrix = mass_matrix(&assembly, Point { t: 0.0, q: &zero, v: &zero });
         check_inertia(system, &matrix)?;
-        let refused = |fill| too_much(&assembly, fill);
-        let inertia = match ConstantMass::new(&assembly, &matrix) {
-            Some(mass) => {
-                let gram = Gram::new(&assembly, &mass).map_err(refused)?;
-                Some(ConstantInertia { mass, gram })
-            }
-            None => None,
-        };
+        // Where the constraints alone fill in too much, they are eliminated with the coordinates.
+        let inertia = ConstantMass::new(&assembly, &matrix).and_then(|mass| {
+            let gram = Gram::new(&assembly, &mass).ok()?;
+            Some(ConstantInertia { mass, gram })
+        });
         let saddle = match inertia {
             Some(_) => None,
-            None => Some(Saddle::new(&assembly).map_err(refused)?),
+            None => Some(Saddle::new(&assembly).map_err(|fill| too_much(&assembly, fill))?),
         };
         Ok(Self { space: Space::of(&assembly), assembly, inertia, saddle })
     }

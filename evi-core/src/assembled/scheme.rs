@@ -7,7 +7,8 @@ use super::{AssembledState, AssemblyError, PreparedScene};
 use crate::integrator::{Composed, Evi, StepError, Symmetric, Tally};
 use crate::scheme::checked_step_size;
 
-/// A scheme that integrates assembled scenes: the members of [`Evi`] on straight curves and their symmetric compositions.
+/// A scheme that integrates assembled scenes: [`Evi`] on straight curves, [`Galerkin`](crate::integrator::Galerkin) on polynomials, their symmetric
+/// compositions, and all of these rescued.
 pub trait AssembledScheme {
     /// Its one-step map.
     type Step: AssembledStep;
@@ -104,12 +105,7 @@ impl<B: AssembledScheme + Symmetric, const N: usize> AssembledScheme for Compose
         for (stage, start) in self.stages() {
             stages.push((start * h, stage.prepare(scene)?));
         }
-        let none = || vec![0.0; scene.assembly.n_coordinates];
-        Ok(AssembledComposed {
-            stages,
-            h,
-            before: AssembledState { t: 0.0, q: none(), v: none(), p: none() },
-        })
+        Ok(AssembledComposed { stages, h, before: AssembledState::blank(scene.assembly.n_coordinates) })
     }
 }
 
@@ -125,10 +121,7 @@ impl<M: AssembledStep> AssembledStep for AssembledComposed<M> {
         tally: &mut impl Tally,
     ) -> Result<(), StepError> {
         let before = &mut self.before;
-        before.t = state.t;
-        before.q.copy_from_slice(&state.q);
-        before.v.copy_from_slice(&state.v);
-        before.p.copy_from_slice(&state.p);
+        before.copy_from(state);
         for (start, stage) in &mut self.stages {
             // Not what the stages before have added up: their roundings are felt by constraints that move.
             state.t = before.t + *start;

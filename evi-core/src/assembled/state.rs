@@ -11,6 +11,20 @@ pub struct AssembledState {
 }
 
 impl AssembledState {
+    /// Zeros, for numbers to come.
+    pub(super) fn blank(n_coordinates: usize) -> Self {
+        let none = || vec![0.0; n_coordinates];
+        Self { t: 0.0, q: none(), v: none(), p: none() }
+    }
+
+    /// Overwrites every number.
+    pub(super) fn copy_from(&mut self, other: &Self) {
+        self.t = other.t;
+        self.q.copy_from_slice(&other.q);
+        self.v.copy_from_slice(&other.v);
+        self.p.copy_from_slice(&other.p);
+    }
+
     /// Time.
     pub const fn t(&self) -> f64 {
         self.t

@@ -54,6 +54,8 @@ pub use of_rank::OfRank;
 #[cfg(feature = "std")]
 pub use proposal::{LONGEST_TRIAL, Member, PASSES_OF_NEWTON, Proposal, ProposalError, propose};
 pub use rescue::{Rescued, RescuedStep, Rescues};
+#[cfg(feature = "std")]
+pub(crate) use rescue::{depends_on_length, n_parts};
 pub use run::Run;
 #[cfg(feature = "std")]
 pub(crate) use run::steps_between;

@@ -37,7 +37,7 @@ impl<const K: usize> AssembledGalerkin<K> {
             gram.solve(&mut space.rates);
             space.pull.fill(0.0);
             subtract_pull::<f64, false>(&assembly.slots, &space.at_end.slopes, &space.rates, &mut space.pull);
-            mass.inverse_times::<f64, false>(&space.pull, &mut space.moved);
+            mass.inverse_times(&space.pull, &mut space.moved);
             space.q.iter_mut().zip(&space.moved).for_each(|(q, moved)| *q += moved);
             assembly.constraint_derivatives(t, &space.q, &mut space.at_end);
         }

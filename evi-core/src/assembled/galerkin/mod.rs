@@ -108,7 +108,7 @@ fn set_acceleration(
     let Some(ConstantInertia { mass, gram }) = inertia else { return Ok(()) };
     let at = Point { t: state.t, q: &state.q, v: &state.v };
     assembly.force(at, &mut space.pull);
-    mass.inverse_times::<f64, false>(&space.pull, &mut space.moved);
+    mass.inverse_times(&space.pull, &mut space.moved);
     if assembly.n_constraints == 0 {
         return Ok(());
     }
@@ -123,6 +123,6 @@ fn set_acceleration(
         &space.rates,
         &mut space.pull,
     );
-    mass.inverse_times::<f64, false>(&space.pull, &mut space.moved);
+    mass.inverse_times(&space.pull, &mut space.moved);
     Ok(())
 }

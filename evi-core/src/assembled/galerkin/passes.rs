@@ -7,6 +7,9 @@
 //! qᵢ = q₀ + h cᵢ v₀ + h² Σⱼ Bᵢⱼ aⱼ           ηᵢ = Sᵢ⁻¹ φ(qᵢ)           λ += (B⁻¹ η) / h²
 //! q̃ᵢ = qᵢ − M⁻¹ Gᵢᵀ ηᵢ                        Fⱼ = ∂L/∂q(q̃ⱼ) + f(q̃ⱼ, vⱼ) − G(q̃ⱼ)ᵀ λⱼ
 //! ```
+//!
+//! Loops go over coordinates by index, and check it: where iterators leave no check, the compiler makes vectors of eight coordinates instead of
+//! eight nodes, and gathers them from all over memory.
 
 use super::super::AssembledState;
 use super::super::assembly::{Assembly, subtract_pull};
@@ -29,8 +32,9 @@ pub(super) struct NodeStorage {
     gram: Symmetric<Lanes>,
     /// Of the nodes `0 .. K−1`.
     start_gram: Symmetric<Lanes>,
-    /// Positions at the nodes `1 .. K`, and what they are after the constraints.
+    /// Positions at the nodes `1 .. K`; where forces are evaluated those after the constraints, with the start of the step in the lane of its end.
     positions: Vec<Lanes>,
+    /// Positions after the constraints of the last pass, where forces depend on them.
     nearest: Vec<Lanes>,
     /// `aⱼ` and `Fⱼ` of the last passes, `j = 0 .. K−1`.
     pub(super) accelerations: Vec<Lanes>,
@@ -38,7 +42,6 @@ pub(super) struct NodeStorage {
     /// `∂L/∂q + f` of scenes in which it never changes.
     uniform_force: Vec<f64>,
     velocities: Vec<Lanes>,
-    displacements: Vec<Lanes>,
     multipliers: Vec<Lanes>,
     /// `φ`, then `η`.
     shares: Vec<Lanes>,
@@ -61,12 +64,11 @@ impl NodeStorage {
             gram: Symmetric::zero(&pattern.elimination),
             start_gram: Symmetric::zero(&pattern.elimination),
             positions: per_coordinate(),
-            nearest: per_coordinate(),
+            nearest: if assembly.traits.force_varies() { per_coordinate() } else { Vec::new() },
             accelerations: per_coordinate(),
             forces: per_coordinate(),
             uniform_force: assembly.force_at_origin(),
-            velocities: per_coordinate(),
-            displacements: per_coordinate(),
+            velocities: if assembly.traits.force_is_on_v { per_coordinate() } else { Vec::new() },
             multipliers: per_constraint(),
             shares: per_constraint(),
             values: per_constraint(),
@@ -136,10 +138,10 @@ impl<const K: usize> LaneOperation for Passes<'_, K> {
         };
         let scene = Scene { assembly, mass, pattern: &gram.pattern, instructions: self.instructions };
         match self.first {
-            FirstGuess::Continued => self.nodes.continue_past::<K, FUSED>(),
+            FirstGuess::Continued => self.nodes.continue_past::<K, FUSED>(assembly.n_coordinates),
             FirstGuess::Constant => {
-                for (lanes, &acceleration) in self.nodes.accelerations.iter_mut().zip(&space.moved) {
-                    *lanes = Lanes::splat(acceleration);
+                for i in 0..assembly.n_coordinates {
+                    self.nodes.accelerations[i] = Lanes::splat(space.moved[i]);
                 }
             }
         }
@@ -157,12 +159,12 @@ struct Scene<'a> {
 
 impl NodeStorage {
     #[inline(always)]
-    fn continue_past<const K: usize, const FUSED: bool>(&mut self) {
+    fn continue_past<const K: usize, const FUSED: bool>(&mut self, n_coordinates: usize) {
         let [of_last, of_before] = &self.tables.prediction;
         let [last, before] = &self.past;
-        for ((lanes, &last), &before) in self.accelerations.iter_mut().zip(last).zip(before) {
-            let older = product::<K, FUSED>(of_before, before, Lanes::ZERO);
-            *lanes = product::<K, FUSED>(of_last, last, older);
+        for i in 0..n_coordinates {
+            let older = product::<K, FUSED>(of_before, before[i], Lanes::ZERO);
+            self.accelerations[i] = product::<K, FUSED>(of_last, last[i], older);
         }
     }
 
@@ -173,34 +175,27 @@ impl NodeStorage {
         start: &AssembledState,
     ) -> Result<usize, NotConverged> {
         let Scene { assembly, mass, pattern, instructions } = *scene;
+        let n = assembly.n_coordinates;
         let is_constrained = assembly.n_constraints > 0;
-        let force_varies = assembly.traits.force_is_on_q || assembly.traits.force_is_on_v;
+        let force_varies = assembly.traits.force_varies();
         let times = self.tables.nodes + Lanes::splat(start.t);
         self.place::<K, FUSED>(start);
-        self.nearest.copy_from_slice(&self.positions);
+        if force_varies {
+            self.nearest.copy_from_slice(&self.positions);
+        }
         let per_reach = 1.0 / self.reach::<K>(mass, start);
         let mut progress = Progress::default();
         let (mut is_stale, mut passes) = (true, 0);
         loop {
-            let mut lengths = Lanes::ZERO;
-            if force_varies {
-                for ((position, nearest), &unit) in
-                    self.positions.iter().zip(&mut self.nearest).zip(&mass.units)
-                {
-                    lengths = lengths.larger((*position - *nearest).abs() * Lanes::splat(unit));
-                    *nearest = *position;
-                }
-            } else {
-                self.nearest.copy_from_slice(&self.positions);
-            }
             if is_constrained {
                 if is_stale {
+                    let (values, slopes) = (&mut self.values, &mut self.slopes);
                     assembly.lane_constraint_derivatives(
                         instructions,
                         times,
                         &self.positions,
-                        &mut self.values,
-                        &mut self.slopes,
+                        values,
+                        slopes,
                     );
                     pattern.symmetric::<Lanes, FUSED>(mass, &self.slopes, &mut self.gram);
                     self.gram.factor_unchecked::<FUSED>(&pattern.elimination);
@@ -212,16 +207,28 @@ impl NodeStorage {
                 // `−Gᵀ η`, in the place of the forces, which are not needed any more.
                 self.forces.fill(Lanes::ZERO);
                 subtract_pull::<Lanes, FUSED>(&assembly.slots, &self.slopes, &self.shares, &mut self.forces);
-                mass.inverse_times::<Lanes, FUSED>(&self.forces, &mut self.displacements);
-                for ((nearest, &displacement), &unit) in
-                    self.nearest.iter_mut().zip(&self.displacements).zip(&mass.units)
-                {
-                    *nearest = *nearest + displacement;
-                    lengths = lengths.larger(displacement.abs() * Lanes::splat(unit));
+            }
+            // The largest displacement, in the metric of the mass matrix, at every node.
+            let mut lengths = Lanes::ZERO;
+            for i in 0..n {
+                let mut position = self.positions[i];
+                if force_varies {
+                    let moved = position - self.nearest[i];
+                    lengths = lengths.larger(moved.abs() * Lanes::splat(mass.units[i]));
+                    self.nearest[i] = position;
                 }
+                if is_constrained {
+                    let displacement = mass.inverse_times_at::<Lanes, FUSED>(&self.forces, i);
+                    lengths = lengths.larger(displacement.abs() * Lanes::splat(mass.units[i]));
+                    position = position + displacement;
+                }
+                // The end of the step gives its lane to the start; the positions are made anew.
+                self.positions[i] = position.with(K - 1, start.q[i]);
             }
             self.set_forces::<K, FUSED>(scene, start, passes == 0);
-            mass.inverse_times::<Lanes, FUSED>(&self.forces, &mut self.accelerations);
+            for i in 0..n {
+                self.accelerations[i] = mass.inverse_times_at::<Lanes, FUSED>(&self.forces, i);
+            }
             self.place::<K, FUSED>(start);
             passes += 1;
             let length = lengths.largest() * per_reach;
@@ -242,10 +249,10 @@ impl NodeStorage {
     /// Overwrites the positions with those of the accelerations.
     #[inline(always)]
     fn place<const K: usize, const FUSED: bool>(&mut self, start: &AssembledState) {
-        for (i, position) in self.positions.iter_mut().enumerate() {
+        for i in 0..start.q.len() {
             let inertial = self.tables.nodes * Lanes::splat(start.v[i]);
             let difference = product::<K, FUSED>(&self.tables.positions, self.accelerations[i], inertial);
-            *position = Lanes::splat(start.q[i]) + difference;
+            self.positions[i] = Lanes::splat(start.q[i]) + difference;
         }
     }
 
@@ -269,24 +276,20 @@ impl NodeStorage {
         start: &AssembledState,
         is_first: bool,
     ) {
-        let Scene { assembly, mass, pattern, instructions } = *scene;
+        let Scene { assembly, instructions, .. } = *scene;
         let times = (self.tables.nodes + Lanes::splat(start.t)).with(K - 1, start.t);
-        // The end of the step gives its lane to the start; the positions are made anew.
-        for ((at, &point), &q) in self.positions.iter_mut().zip(&self.nearest).zip(&start.q) {
-            *at = point.with(K - 1, q);
-        }
         let velocities = if assembly.traits.force_is_on_v {
-            for (i, velocity) in self.velocities.iter_mut().enumerate() {
+            for i in 0..assembly.n_coordinates {
                 let v = Lanes::splat(start.v[i]);
-                *velocity = product::<K, FUSED>(&self.tables.velocities, self.accelerations[i], v);
+                self.velocities[i] = product::<K, FUSED>(&self.tables.velocities, self.accelerations[i], v);
             }
             Some(&self.velocities[..])
         } else {
             None
         };
         if assembly.traits.has_uniform_force() {
-            for (force, &uniform) in self.forces.iter_mut().zip(&self.uniform_force) {
-                *force = Lanes::splat(uniform);
+            for i in 0..assembly.n_coordinates {
+                self.forces[i] = Lanes::splat(self.uniform_force[i]);
             }
         } else {
             assembly.lane_force(instructions, times, &self.positions, velocities, &mut self.forces);
@@ -294,34 +297,32 @@ impl NodeStorage {
         if assembly.n_constraints == 0 {
             return;
         }
-        assembly.lane_constraint_derivatives(
-            instructions,
-            times,
-            &self.positions,
-            &mut self.values,
-            &mut self.start_slopes,
-        );
         if is_first {
-            // `λⱼ = Sⱼ⁻¹ Gⱼ (M⁻¹ fⱼ − aⱼ)`: the multipliers of the predicted accelerations under the other forces.
-            pattern.symmetric::<Lanes, FUSED>(mass, &self.start_slopes, &mut self.start_gram);
-            self.start_gram.factor_unchecked::<FUSED>(&pattern.elimination);
-            mass.inverse_times::<Lanes, FUSED>(&self.forces, &mut self.displacements);
-            self.multipliers.fill(Lanes::ZERO);
-            for (slot, &slope) in assembly.slots.iter().zip(&self.start_slopes) {
-                let (row, col) = (slot.row as usize, slot.col as usize);
-                let held = self.displacements[col] - self.accelerations[col];
-                self.multipliers[row] = slope.times_plus::<FUSED>(held, self.multipliers[row]);
-            }
-            self.start_gram.solve::<FUSED>(&pattern.elimination, &mut self.multipliers);
+            self.imply_multipliers::<FUSED>(scene, times);
         }
-        for (multiplier, &share) in self.multipliers.iter_mut().zip(&self.shares) {
-            *multiplier = product::<K, FUSED>(&self.tables.accelerations, share, *multiplier);
+        for c in 0..assembly.n_constraints {
+            let (share, multiplier) = (self.shares[c], self.multipliers[c]);
+            self.multipliers[c] = product::<K, FUSED>(&self.tables.accelerations, share, multiplier);
         }
-        subtract_pull::<Lanes, FUSED>(
-            &assembly.slots,
-            &self.start_slopes,
-            &self.multipliers,
-            &mut self.forces,
-        );
+        let (multipliers, forces) = (&self.multipliers, &mut self.forces);
+        assembly.subtract_lane_pull(instructions, times, &self.positions, multipliers, forces);
+    }
+
+    /// Overwrites the multipliers with those of the predicted accelerations under the forces: `λⱼ = Sⱼ⁻¹ Gⱼ (M⁻¹ fⱼ − aⱼ)`.
+    #[inline(always)]
+    fn imply_multipliers<const FUSED: bool>(&mut self, scene: &Scene<'_>, times: Lanes) {
+        let Scene { assembly, mass, pattern, instructions } = *scene;
+        // The values of the multipliers' place are not needed yet.
+        let (values, slopes) = (&mut self.multipliers, &mut self.start_slopes);
+        assembly.lane_constraint_derivatives(instructions, times, &self.positions, values, slopes);
+        pattern.symmetric::<Lanes, FUSED>(mass, &self.start_slopes, &mut self.start_gram);
+        self.start_gram.factor_unchecked::<FUSED>(&pattern.elimination);
+        self.multipliers.fill(Lanes::ZERO);
+        for (slot, &slope) in assembly.slots.iter().zip(&self.start_slopes) {
+            let (row, col) = (slot.row as usize, slot.col as usize);
+            let held = mass.inverse_times_at::<Lanes, FUSED>(&self.forces, col) - self.accelerations[col];
+            self.multipliers[row] = slope.times_plus::<FUSED>(held, self.multipliers[row]);
+        }
+        self.start_gram.solve::<FUSED>(&pattern.elimination, &mut self.multipliers);
     }
 }

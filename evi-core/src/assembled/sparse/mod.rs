@@ -7,10 +7,14 @@
 mod elimination;
 mod general;
 mod ordering;
+#[cfg(feature = "sparse")]
+mod pivoted;
 mod symmetric;
 
 pub(super) use elimination::{Elimination, TooMuchFill};
 pub(super) use general::General;
+#[cfg(feature = "sparse")]
+pub(super) use pivoted::Pivoted;
 pub(super) use symmetric::Symmetric;
 
 use crate::linear::SingularMatrix;

@@ -69,8 +69,8 @@ impl<T: Number> Symmetric<T> {
                     self.below[target] = self.below[target].plus_product::<FUSED>(factor, self.below[a]);
                 }
             }
-            for entry in &mut self.below[range] {
-                *entry = *entry * inverse;
+            for b in range {
+                self.below[b] = self.below[b] * inverse;
             }
         }
     }
