@@ -145,6 +145,22 @@ impl InPlaceLu {
         }
     }
 
+    /// Overwrites the right-hand side with the solution for the transposed matrix; `entries` are the factors.
+    pub(crate) fn solve_transposed(&self, entries: &[f64], rhs: &mut [f64]) {
+        let dimension = self.swaps.len();
+        for k in 0..dimension {
+            let above = entries[k * dimension..].iter().zip(&rhs[..k]);
+            let sum: f64 = above.map(|(factor, value)| factor * value).sum();
+            rhs[k] = (rhs[k] - sum) * self.inverse_pivots[k];
+        }
+        for k in (0..dimension).rev() {
+            let multipliers = &entries[k * dimension + k + 1..k * dimension + self.column_ends[k]];
+            let sum: f64 = multipliers.iter().zip(&rhs[k + 1..]).map(|(factor, value)| factor * value).sum();
+            rhs[k] -= sum;
+            rhs.swap(k, self.swaps[k]);
+        }
+    }
+
     /// Smallest pivot over largest.
     pub(crate) const fn pivot_ratio(&self) -> f64 {
         self.pivot_ratio

@@ -93,6 +93,19 @@ impl<S: MechanicalSystem, F: Interpolant<S>> FoldedStep<S, F> {
     }
 }
 
+#[cfg(feature = "std")]
+impl<S: MechanicalSystem, F> FoldedStep<S, F> {
+    /// `−B` and `−a`.
+    pub(crate) const fn start_kick(&self) -> (&CoordinateMatrix<S>, &S::PerCoordinate<f64>) {
+        (&self.start_kick.linear, &self.start_kick.constant)
+    }
+
+    /// `E` and `c`.
+    pub(crate) const fn end_kick(&self) -> (&CoordinateMatrix<S>, &S::PerCoordinate<f64>) {
+        (&self.end_kick.linear, &self.end_kick.constant)
+    }
+}
+
 impl<S: MechanicalSystem, F: Interpolant<S>> KickDriftKick<S> for FoldedStep<S, F> {
     type Coupling = AsScene;
 
@@ -116,6 +129,30 @@ impl<S: MechanicalSystem, F: Interpolant<S>> KickDriftKick<S> for FoldedStep<S, 
         self.end_kick.apply(F::IS_STRAIGHT, q)
     }
 
+    #[cfg(feature = "std")]
+    #[inline]
+    fn start_kick_product(
+        &self,
+        _mechanics: &Mechanics<S>,
+        _t: f64,
+        _q: &S::PerCoordinate<f64>,
+        x: &S::PerCoordinate<f64>,
+    ) -> S::PerCoordinate<f64> {
+        self.start_kick.linear_part(F::IS_STRAIGHT, x)
+    }
+
+    #[cfg(feature = "std")]
+    #[inline]
+    fn end_kick_product(
+        &self,
+        _mechanics: &Mechanics<S>,
+        _t: f64,
+        _q: &S::PerCoordinate<f64>,
+        x: &S::PerCoordinate<f64>,
+    ) -> S::PerCoordinate<f64> {
+        self.end_kick.linear_part(F::IS_STRAIGHT, x)
+    }
+
     #[inline(always)]
     fn drift(&self) -> &CoordinateMatrix<S> {
         &self.drift
@@ -128,6 +165,16 @@ impl<S: MechanicalSystem, F: Interpolant<S>> KickDriftKick<S> for FoldedStep<S, 
 }
 
 impl<S: MechanicalSystem> Kick<S> {
+    /// What a change `x` of the position makes of the kick.
+    #[cfg(feature = "std")]
+    #[inline]
+    fn linear_part(&self, is_straight: bool, x: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
+        if is_straight && S::STRUCTURE.hessian.qq.is_empty() {
+            return Array::from_fn(|_| 0.0);
+        }
+        self.linear.times(|i| x[i])
+    }
+
     /// The kick at `q`, which does not depend on `q` where curves are straight and `L` is at most linear in `q`.
     #[inline(always)]
     fn apply(&self, is_straight: bool, q: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {

@@ -91,6 +91,33 @@ impl<S: MechanicalSystem> ImpulseStep<S> {
     }
 }
 
+#[cfg(feature = "std")]
+impl<S: MechanicalSystem> ImpulseStep<S> {
+    /// `T x − ½h φᵀ ∂²(V + λᵀφ)/∂q² φ x`.
+    fn kick_product(
+        &self,
+        mechanics: &Mechanics<S>,
+        t: f64,
+        q: &S::PerCoordinate<f64>,
+        x: &S::PerCoordinate<f64>,
+    ) -> S::PerCoordinate<f64> {
+        let QuadraticPart { reference, multipliers, .. } = &self.part;
+        let linear = times::<S>(&self.kick, x);
+        let curvature = match &self.filter {
+            None => mechanics.potential_hessian_product(t, q, multipliers, x),
+            Some(filter) => {
+                let filtered = times::<S>(filter, &self.part.displacement(q));
+                let at = Array::from_fn(|i| reference[i] + filtered[i]);
+                let inner = mechanics.potential_hessian_product(t, &at, multipliers, &times::<S>(filter, x));
+                let mut product = Array::from_fn(|_| 0.0);
+                add_transposed::<S>(filter, &inner, &mut product);
+                product
+            }
+        };
+        Array::from_fn(|i| linear[i] - self.half_h * curvature[i])
+    }
+}
+
 impl<S: MechanicalSystem> KickDriftKick<S> for ImpulseStep<S> {
     type Coupling = Full;
 
@@ -107,6 +134,30 @@ impl<S: MechanicalSystem> KickDriftKick<S> for ImpulseStep<S> {
     #[inline]
     fn end_kick(&self, mechanics: &Mechanics<S>, t: f64, q: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
         self.legendre.canonical(&self.kick_at(mechanics, t, q))
+    }
+
+    #[cfg(feature = "std")]
+    #[inline]
+    fn start_kick_product(
+        &self,
+        mechanics: &Mechanics<S>,
+        t: f64,
+        q: &S::PerCoordinate<f64>,
+        x: &S::PerCoordinate<f64>,
+    ) -> S::PerCoordinate<f64> {
+        self.kick_product(mechanics, t, q, x)
+    }
+
+    #[cfg(feature = "std")]
+    #[inline]
+    fn end_kick_product(
+        &self,
+        mechanics: &Mechanics<S>,
+        t: f64,
+        q: &S::PerCoordinate<f64>,
+        x: &S::PerCoordinate<f64>,
+    ) -> S::PerCoordinate<f64> {
+        self.kick_product(mechanics, t, q, x)
     }
 
     #[inline]

@@ -31,12 +31,42 @@ impl<S: MechanicalSystem> LeapfrogStep<S> {
         Ok(Self { half_h: 0.5 * h, drift, legendre: ConstantLegendre::new(mechanics)? })
     }
 
+    /// `½h`.
+    #[cfg(feature = "std")]
+    pub(crate) const fn half_h(&self) -> f64 {
+        self.half_h
+    }
+
     /// `½h ∂L/∂q`, which does not depend on the velocity.
     #[inline(always)]
     fn kick_at(&self, mechanics: &Mechanics<S>, t: f64, q: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
         let at_rest = Array::from_fn(|_| 0.0);
         let force = S::lagrangian_gradient(&mechanics.constants, t, q, &at_rest).force;
         Array::from_fn(|i| self.half_h * force[i])
+    }
+}
+
+#[cfg(feature = "std")]
+impl<S: MechanicalSystem> LeapfrogStep<S> {
+    /// `½h ∂²L/∂q² x`.
+    fn kick_product(
+        &self,
+        mechanics: &Mechanics<S>,
+        t: f64,
+        q: &S::PerCoordinate<f64>,
+        x: &S::PerCoordinate<f64>,
+    ) -> S::PerCoordinate<f64> {
+        let at_rest = Array::from_fn(|_| 0.0);
+        let (_, hessian) = S::lagrangian_derivatives(&mechanics.constants, t, q, &at_rest);
+        let mut product = S::PerCoordinate::<f64>::from_fn(|_| 0.0);
+        for entry in S::STRUCTURE.hessian.qq {
+            let value = self.half_h * entry.value(mechanics.constants.as_ref(), hessian.as_ref());
+            product[entry.row] += value * x[entry.col];
+            if entry.row != entry.col {
+                product[entry.col] += value * x[entry.row];
+            }
+        }
+        product
     }
 }
 
@@ -56,6 +86,30 @@ impl<S: MechanicalSystem> KickDriftKick<S> for LeapfrogStep<S> {
     #[inline(always)]
     fn end_kick(&self, mechanics: &Mechanics<S>, t: f64, q: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
         self.legendre.canonical(&self.kick_at(mechanics, t, q))
+    }
+
+    #[cfg(feature = "std")]
+    #[inline]
+    fn start_kick_product(
+        &self,
+        mechanics: &Mechanics<S>,
+        t: f64,
+        q: &S::PerCoordinate<f64>,
+        x: &S::PerCoordinate<f64>,
+    ) -> S::PerCoordinate<f64> {
+        self.kick_product(mechanics, t, q, x)
+    }
+
+    #[cfg(feature = "std")]
+    #[inline]
+    fn end_kick_product(
+        &self,
+        mechanics: &Mechanics<S>,
+        t: f64,
+        q: &S::PerCoordinate<f64>,
+        x: &S::PerCoordinate<f64>,
+    ) -> S::PerCoordinate<f64> {
+        self.kick_product(mechanics, t, q, x)
     }
 
     #[inline(always)]

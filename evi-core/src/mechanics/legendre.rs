@@ -12,7 +12,7 @@ use crate::system::{LagrangianGradient, MechanicalSystem};
 
 /// Kinetic energy of the velocities that are removed, relative to that of the motion, up to which one projection does: the
 /// velocities are then below 1/128 of the motion's.
-const LARGEST_REST: f64 = 1.0 / 16384.0;
+pub(crate) const LARGEST_REST: f64 = 1.0 / 16384.0;
 
 /// How well `G M⁻¹ Gᵀ` determines multipliers, in units in which its diagonal is about 1.
 fn gram_conditioning<S: MechanicalSystem>(matrix: &Gram<S>) -> Conditioning {
@@ -42,6 +42,19 @@ impl<S: MechanicalSystem> ConstantLegendre<S> {
             S::lagrangian_gradient(&mechanics.constants, 0.0, &at_rest, &at_rest);
         let inverse_mass = CoordinateMatrix::inverse_of(&mechanics.constant_mass())?;
         Ok(Self { inverse_mass, momentum_at_rest: momentum })
+    }
+
+    /// `M⁻¹`.
+    #[cfg(feature = "std")]
+    #[inline(always)]
+    pub(crate) const fn inverse_mass(&self) -> &CoordinateMatrix<S, AsMass> {
+        &self.inverse_mass
+    }
+
+    /// `a`.
+    #[cfg(feature = "std")]
+    pub(crate) const fn momentum_at_rest(&self) -> &S::PerCoordinate<f64> {
+        &self.momentum_at_rest
     }
 
     /// The velocity of the momentum `p`.

@@ -52,9 +52,11 @@ pub(crate) use implicit_step::{ImplicitStep, StepSolution, StepStart};
 pub(crate) use impulse_step::ImpulseStep;
 pub(crate) use kick_drift_kick::KickDriftKick;
 #[cfg(feature = "std")]
-pub(crate) use lane_step::{FirstGuess, LaneEnd, LaneStep, Passes};
+pub(crate) use lane_step::{FirstGuess, LaneEnd, LaneStep, Passes, product, reach};
 pub(crate) use leapfrog_step::LeapfrogStep;
 pub(crate) use legendre::ConstantLegendre;
+#[cfg(feature = "std")]
+pub(crate) use legendre::LARGEST_REST;
 pub use linearisation::Linearisation;
 pub(crate) use matrix_action::MatrixAction;
 pub(crate) use modes::Modes;

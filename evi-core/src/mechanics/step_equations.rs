@@ -84,6 +84,12 @@ impl<S: MechanicalSystem, T: InterpolationTable, const K: usize> DiscreteLagrang
         &self.quadrature
     }
 
+    /// The curves between the ends of a step.
+    #[cfg(feature = "std")]
+    pub(crate) const fn table(&self) -> &T {
+        &self.table
+    }
+
     /// Calls `see` for the numbers that tell this action from another of its type: those of the rule, and of the curves, which are affine in
     /// the ends of a step.
     pub(crate) fn for_each_number(&self, mut see: impl FnMut(f64)) {

@@ -15,7 +15,7 @@ pub(super) const CHORDS: usize = 2;
 
 /// A prediction is followed where it misses the displacement by the constraint forces by no more than this fraction: one that misses by more
 /// could lead to another root than a step without a past.
-pub(super) const TRUSTED: f64 = 1.0 / 64.0;
+pub(crate) const TRUSTED: f64 = 1.0 / 64.0;
 
 /// A last correction that is shorter than this fraction of the displacement by the constraint forces changes no matrix.
 pub(super) const SHORT: f64 = 1.0 / (1_u64 << 40) as f64;

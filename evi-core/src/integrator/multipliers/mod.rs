@@ -10,6 +10,8 @@ mod history;
 mod span;
 
 use self::attempt::{Attempt, round_off_of};
+#[cfg(feature = "std")]
+pub(crate) use self::attempt::TRUSTED;
 use self::history::History;
 use self::span::{Span, drift_of, move_by};
 use super::StepError;
@@ -47,6 +49,12 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>> MultiplierStep<S, F> {
     /// The step without its constraint forces.
     pub(crate) const fn free(&self) -> &F {
         &self.free
+    }
+
+    /// `ℓ` of the last step that was taken.
+    #[cfg(feature = "std")]
+    pub(crate) const fn last_impulse(&self) -> &S::PerConstraint<f64> {
+        &self.history.previous[0]
     }
 
     /// Overwrites `state` with the state one step of size `h` later, and returns what its positions and momenta have lost.
