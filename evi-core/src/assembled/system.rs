@@ -7,9 +7,6 @@
 //! An element is an ordinary small scene with local coordinates and its own parameters; a family is an element, how often it is repeated, and
 //! where the coordinates of each copy lie among those of the scene. Numbers of bodies are known when a run is prepared.
 
-use std::format;
-use std::string::String;
-
 use crate::system::MechanicalSystem;
 
 /// A scene that is a sum of repeated elements.

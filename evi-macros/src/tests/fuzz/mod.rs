@@ -35,7 +35,7 @@ fn report(kind: &str, verdicts: &[Verdict], least_implemented: f64) {
 fn structs_by_the_grammar() {
     let property =
         |choices: &mut Choices| expanded(grammar::structure(choices).parse().expect("the grammar's tokens"));
-    report("by the grammar", &check(1000, STACK, property), 0.4);
+    report("by the grammar", &check(2000, STACK, property), 0.4);
 }
 
 #[test]
@@ -44,7 +44,7 @@ fn structs_with_mutated_tokens() {
         let tokens = grammar::structure(choices).parse().expect("the grammar's tokens");
         expanded(mutation::mutated(tokens, choices))
     };
-    report("mutated", &check(2000, STACK, property), 0.005);
+    report("mutated", &check(3000, STACK, property), 0.005);
 }
 
 /// Scenes with arrays, unrolled and as loops.
@@ -87,7 +87,7 @@ fn soup_in_the_attribute() {
         let source = format!("#[evi({items})] struct Fuzzed {{ a: f64 }}");
         expanded(mutation::with_attribute(source.parse().expect("tokens"), soup))
     };
-    report("soup", &check(4000, STACK, property), 0.01);
+    report("soup", &check(5000, STACK, property), 0.01);
 }
 
 /// Expands twice, and looks at what comes out.
