@@ -295,11 +295,11 @@ impl<S: MechanicalSystem, M, const N: usize> ComposedStep<S, M, N> {
 
     /// Overwrites `state` with where the stages lead one after the other.
     #[inline(always)]
-    fn take_stages(
+    pub(crate) fn take_stages<E>(
         &mut self,
         state: &mut State<S>,
-        mut take: impl FnMut(&mut M, &mut State<S>) -> Result<(), StepError>,
-    ) -> Result<(), StepError> {
+        mut take: impl FnMut(&mut M, &mut State<S>) -> Result<(), E>,
+    ) -> Result<(), E> {
         let mut reached = state.clone();
         for (stage, start) in self.stages.iter_mut().zip(&self.starts) {
             // Not what the stages before have added up: their roundings are felt by constraints that move.

@@ -12,8 +12,7 @@
 //! is ever formed. A fixed point solves the equations of [`super::galerkin_equations`] exactly, whatever `Sᵢ` is and wherever the first pass begins;
 //! a pass shrinks the error by about `4 (h ω)² ρ(B)`.
 
-use super::coupling::{AsScene, Coupling};
-use super::{ConstantLegendre, CoordinateMatrix, ForcePoint, Mechanics, State};
+use super::{AsMass, AsScene, ConstantLegendre, CoordinateMatrix, Coupling, ForcePoint, Mechanics, State};
 use crate::array::Array;
 use crate::linear::{Cholesky, LaneGram};
 use crate::newton::{NotConverged, Progress};
@@ -56,15 +55,6 @@ pub(crate) struct LaneEnd<S: MechanicalSystem> {
     pub(crate) difference: S::PerCoordinate<f64>,
     /// Passes taken.
     pub(crate) passes: usize,
-}
-
-/// Couples what the mass matrix couples.
-struct AsMass;
-
-impl<S: MechanicalSystem> Coupling<S> for AsMass {
-    const IS_DIAGONAL: bool = matches!(S::STRUCTURE.mass_shape, crate::system::MassShape::Diagonal);
-
-    type GramFactors = S::GramFactors;
 }
 
 /// Passes until they have converged, as an operation on lanes.
