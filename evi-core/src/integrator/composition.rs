@@ -204,6 +204,16 @@ impl<B: Symmetric, const N: usize> Symmetric for Composed<B, N> {
     }
 }
 
+impl<B: Symmetric, const N: usize> Composed<B, N> {
+    /// The scheme of every stage, with the fraction of the step at which it starts.
+    #[cfg(feature = "std")]
+    pub(crate) fn stages(&self) -> impl Iterator<Item = (B, f64)> {
+        let h = self.step_size();
+        let stage = move |fraction: f64| self.base.with_step_size(fraction * h);
+        self.composition.fractions.into_iter().map(stage).zip(self.composition.starts())
+    }
+}
+
 impl<B: Compensable, const N: usize> Compensable for Composed<B, N> {}
 
 impl<S: MechanicalSystem, B: Symmetric + Scheme<S>, const N: usize> Scheme<S> for Composed<B, N> {
@@ -285,11 +295,11 @@ impl<S: MechanicalSystem, M, const N: usize> ComposedStep<S, M, N> {
 
     /// Overwrites `state` with where the stages lead one after the other.
     #[inline(always)]
-    fn take_stages(
+    pub(crate) fn take_stages<E>(
         &mut self,
         state: &mut State<S>,
-        mut take: impl FnMut(&mut M, &mut State<S>) -> Result<(), StepError>,
-    ) -> Result<(), StepError> {
+        mut take: impl FnMut(&mut M, &mut State<S>) -> Result<(), E>,
+    ) -> Result<(), E> {
         let mut reached = state.clone();
         for (stage, start) in self.stages.iter_mut().zip(&self.starts) {
             // Not what the stages before have added up: their roundings are felt by constraints that move.

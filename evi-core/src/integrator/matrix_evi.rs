@@ -188,7 +188,8 @@ impl<S: MechanicalSystem, const K: usize, P: QuadraticModel<S>> Scheme<S> for Ma
             let requirement = "a positive definite mass matrix";
             let step = ImpulseStep::new(&mechanics, part, &modes, self.mollifier, h)
                 .map_err(|_| SchemeError::UnsupportedStructure { scheme: SCHEME, requirement })?;
-            Form::Impulse { mechanics, step: MultiplierStep::new(step), h }
+            let step = MultiplierStep::new(&mechanics, step);
+            Form::Impulse { mechanics, step, h }
         } else {
             let action = MatrixAction::new(mechanics, part, &modes, self.mollifier, self.quadrature, h);
             Form::General(action)
@@ -225,7 +226,7 @@ pub struct MatrixEviStep<S: MechanicalSystem, const K: usize> {
 
 // One of them is made per run: the difference in size costs nothing.
 #[allow(clippy::large_enum_variant)]
-enum Form<S: MechanicalSystem, const K: usize> {
+pub(crate) enum Form<S: MechanicalSystem, const K: usize> {
     /// The nodes are the ends of the step: linear in the momentum.
     Impulse { mechanics: Mechanics<S>, step: MultiplierStep<S, ImpulseStep<S>>, h: f64 },
     /// Any nodes.
@@ -237,6 +238,14 @@ impl<S: MechanicalSystem, const K: usize> MatrixEviStep<S, K> {
     /// not a part of it.
     pub fn modes(&self) -> &[StepMode] {
         self.modes.as_ref()
+    }
+}
+
+#[cfg(feature = "std")]
+impl<S: MechanicalSystem, const K: usize> MatrixEviStep<S, K> {
+    /// How the steps are solved.
+    pub(crate) const fn form(&self) -> &Form<S, K> {
+        &self.form
     }
 }
 

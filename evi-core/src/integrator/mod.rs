@@ -36,19 +36,31 @@ pub use compensated::{Compensable, CompensableStep, Compensated, CompensatedStep
 pub use composition::{Composed, ComposedStep, Composition, Symmetric};
 pub use evi::{Evi, EviStep};
 #[cfg(feature = "std")]
+pub(crate) use galerkin::NewtonSolve;
+#[cfg(feature = "std")]
 pub use galerkin::{Galerkin, GalerkinStep, Iteration};
 #[cfg(feature = "std")]
+pub(crate) use gauss::GaussNewton;
+#[cfg(feature = "std")]
 pub use gauss::{Gauss, GaussStep};
+#[cfg(feature = "std")]
+pub(crate) use matrix_evi::Form;
 pub use matrix_evi::{
     LinearisedAlong, LinearisedAt, MatrixEvi, MatrixEviStep, QuadraticModel, StepMode, Stiffness,
 };
+#[cfg(feature = "std")]
+pub(crate) use multipliers::{MultiplierStep, TRUSTED};
 pub use of_rank::OfRank;
 #[cfg(feature = "std")]
 pub use proposal::{LONGEST_TRIAL, Member, PASSES_OF_NEWTON, Proposal, ProposalError, propose};
 pub use rescue::{Rescued, RescuedStep, Rescues};
+#[cfg(feature = "std")]
+pub(crate) use rescue::{depends_on_length, n_parts};
 pub use run::Run;
-#[cfg(feature = "generic")]
+#[cfg(feature = "std")]
 pub(crate) use run::steps_between;
+#[cfg(feature = "std")]
+pub(crate) use simulation::consistent_start;
 pub use simulation::{ConstraintLabel, Simulation, StartError};
 #[cfg(feature = "std")]
 pub use trajectory::{Interrupted, Trajectory};

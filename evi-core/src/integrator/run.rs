@@ -143,16 +143,33 @@ impl<S: MechanicalSystem, M: OneStep<S>, T: Tally> Run<S, M, T> {
     /// [`StepError`]; the run then stands where it stood.
     #[inline]
     pub fn advance(&mut self) -> Result<&State<S>, StepError> {
+        self.advance_by(|map, state, tally| map.advance(state, tally))?;
+        Ok(&self.state)
+    }
+
+    /// Takes one step, as `take` does it.
+    #[inline(always)]
+    pub(crate) fn advance_by<R, E: From<StepError>>(
+        &mut self,
+        take: impl FnOnce(&mut M, &mut State<S>, &mut T) -> Result<R, E>,
+    ) -> Result<R, E> {
         if S::N_INPUTS > 0 {
             self.check_inputs()?;
         }
         self.tally.begin_step(self.steps);
-        self.map.advance(&mut self.state, &mut self.tally)?;
+        let taken = take(&mut self.map, &mut self.state, &mut self.tally)?;
         self.steps += 1;
         // A product, since a sum of 1e6 step sizes loses six digits.
         // The cast of a signed number is one instruction; no run has 2⁶³ steps.
         self.state.t = self.start_time + self.steps as i64 as f64 * self.map.h();
-        Ok(&self.state)
+        Ok(taken)
+    }
+
+    /// Overwrites the state, the memory of the map and the number of steps taken with those of an earlier moment of this run.
+    #[cfg(feature = "std")]
+    pub(crate) fn go_back(&mut self, steps: u64, recall: impl FnOnce(&mut M, &mut State<S>)) {
+        recall(&mut self.map, &mut self.state);
+        self.steps = steps;
     }
 
     /// Refuses inputs that are not finite.

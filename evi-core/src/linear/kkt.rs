@@ -50,6 +50,18 @@ impl<S: MechanicalSystem> Kkt<S> {
         self.rows[row][col] += value;
     }
 
+    /// Overwrites `A` with its transpose.
+    #[cfg(feature = "std")]
+    pub(crate) fn transpose_block(&mut self) {
+        for row in 0..S::N_COORDINATES {
+            for col in 0..row {
+                let mirrored = self.rows[col][row];
+                self.rows[col][row] = self.rows[row][col];
+                self.rows[row][col] = mirrored;
+            }
+        }
+    }
+
     /// Sets `G₀ᵀ` from the Jacobian at the start of a step.
     #[inline]
     pub(crate) fn set_upper_jacobian(&mut self, constants: &[f64], jacobian: &[f64]) {

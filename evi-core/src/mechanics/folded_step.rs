@@ -93,29 +93,64 @@ impl<S: MechanicalSystem, F: Interpolant<S>> FoldedStep<S, F> {
     }
 }
 
+#[cfg(feature = "std")]
+impl<S: MechanicalSystem, F> FoldedStep<S, F> {
+    /// `−B` and `−a`.
+    pub(crate) const fn start_kick(&self) -> (&CoordinateMatrix<S>, &S::PerCoordinate<f64>) {
+        (&self.start_kick.linear, &self.start_kick.constant)
+    }
+
+    /// `E` and `c`.
+    pub(crate) const fn end_kick(&self) -> (&CoordinateMatrix<S>, &S::PerCoordinate<f64>) {
+        (&self.end_kick.linear, &self.end_kick.constant)
+    }
+}
+
 impl<S: MechanicalSystem, F: Interpolant<S>> KickDriftKick<S> for FoldedStep<S, F> {
     type Coupling = AsScene;
 
     #[inline]
-    fn kicked_at_start(
+    fn start_kick(
         &self,
         _mechanics: &Mechanics<S>,
         _t: f64,
         q: &S::PerCoordinate<f64>,
-        p: &S::PerCoordinate<f64>,
     ) -> S::PerCoordinate<f64> {
-        self.start_kick.apply(F::IS_STRAIGHT, q, p)
+        self.start_kick.apply(F::IS_STRAIGHT, q)
     }
 
     #[inline]
-    fn kicked_at_end(
+    fn end_kick(
         &self,
         _mechanics: &Mechanics<S>,
         _t: f64,
         q: &S::PerCoordinate<f64>,
-        p: &S::PerCoordinate<f64>,
     ) -> S::PerCoordinate<f64> {
-        self.end_kick.apply(F::IS_STRAIGHT, q, p)
+        self.end_kick.apply(F::IS_STRAIGHT, q)
+    }
+
+    #[cfg(feature = "std")]
+    #[inline]
+    fn start_kick_product(
+        &self,
+        _mechanics: &Mechanics<S>,
+        _t: f64,
+        _q: &S::PerCoordinate<f64>,
+        x: &S::PerCoordinate<f64>,
+    ) -> S::PerCoordinate<f64> {
+        self.start_kick.linear_part(F::IS_STRAIGHT, x)
+    }
+
+    #[cfg(feature = "std")]
+    #[inline]
+    fn end_kick_product(
+        &self,
+        _mechanics: &Mechanics<S>,
+        _t: f64,
+        _q: &S::PerCoordinate<f64>,
+        x: &S::PerCoordinate<f64>,
+    ) -> S::PerCoordinate<f64> {
+        self.end_kick.linear_part(F::IS_STRAIGHT, x)
     }
 
     #[inline(always)]
@@ -130,18 +165,23 @@ impl<S: MechanicalSystem, F: Interpolant<S>> KickDriftKick<S> for FoldedStep<S, 
 }
 
 impl<S: MechanicalSystem> Kick<S> {
-    /// `p` after the kick at `q`, which does not depend on `q` where curves are straight and `L` is at most linear in `q`.
+    /// What a change `x` of the position makes of the kick.
+    #[cfg(feature = "std")]
     #[inline]
-    fn apply(
-        &self,
-        is_straight: bool,
-        q: &S::PerCoordinate<f64>,
-        p: &S::PerCoordinate<f64>,
-    ) -> S::PerCoordinate<f64> {
+    fn linear_part(&self, is_straight: bool, x: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
         if is_straight && S::STRUCTURE.hessian.qq.is_empty() {
-            return Array::from_fn(|i| p[i] + self.constant[i]);
+            return Array::from_fn(|_| 0.0);
+        }
+        self.linear.times(|i| x[i])
+    }
+
+    /// The kick at `q`, which does not depend on `q` where curves are straight and `L` is at most linear in `q`.
+    #[inline(always)]
+    fn apply(&self, is_straight: bool, q: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
+        if is_straight && S::STRUCTURE.hessian.qq.is_empty() {
+            return self.constant.clone();
         }
         let linear = self.linear.times(|i| q[i]);
-        Array::from_fn(|i| p[i] + (linear[i] + self.constant[i]))
+        Array::from_fn(|i| linear[i] + self.constant[i])
     }
 }

@@ -134,7 +134,7 @@ impl<S: MechanicalSystem, T: NodalTables<K>, const K: usize> GalerkinAction<S, T
 
     /// `t_a`.
     #[inline]
-    fn time(&self, t: f64, node: usize) -> f64 {
+    pub(crate) fn time(&self, t: f64, node: usize) -> f64 {
         t + self.nodes.node(node) * self.h
     }
 
@@ -170,10 +170,16 @@ impl<S: MechanicalSystem, T: NodalTables<K>, const K: usize> GalerkinAction<S, T
         })
     }
 
+    /// `h v_j` of coordinate `i` per point `a`.
+    #[inline]
+    pub(crate) fn rate(&self, node: usize, a: usize, i: usize) -> f64 {
+        self.tables.table(i).rates(node).per_point(a)
+    }
+
     /// `h v_j` of coordinate `i` per point `a`, times the weight of the node.
     #[inline]
     fn weighted_rate(&self, node: usize, a: usize, i: usize) -> f64 {
-        self.nodes.weights[node] * self.tables.table(i).rates(node).per_point(a)
+        self.nodes.weights[node] * self.rate(node, a, i)
     }
 
     /// Overwrites `residual` with the left sides of the equations, node by node, and `entries` (by columns, in the order of

@@ -70,15 +70,9 @@ impl<S: MechanicalSystem> ImpulseStep<S> {
         }
     }
 
-    /// `p + T (q − q_ref) − ½h ∂/∂q U(t, φ(hW) q)`.
+    /// `T (q − q_ref) − ½h ∂/∂q U(t, φ(hW) q)`.
     #[inline]
-    fn kicked(
-        &self,
-        mechanics: &Mechanics<S>,
-        t: f64,
-        q: &S::PerCoordinate<f64>,
-        p: &S::PerCoordinate<f64>,
-    ) -> S::PerCoordinate<f64> {
+    fn kick_at(&self, mechanics: &Mechanics<S>, t: f64, q: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
         let QuadraticPart { reference, multipliers, .. } = &self.part;
         let displacement = self.part.displacement(q);
         let linear = times::<S>(&self.kick, &displacement);
@@ -93,7 +87,34 @@ impl<S: MechanicalSystem> ImpulseStep<S> {
                 gradient
             }
         };
-        Array::from_fn(|i| p[i] + (linear[i] - self.half_h * gradient[i]))
+        Array::from_fn(|i| linear[i] - self.half_h * gradient[i])
+    }
+}
+
+#[cfg(feature = "std")]
+impl<S: MechanicalSystem> ImpulseStep<S> {
+    /// `T x − ½h φᵀ ∂²(V + λᵀφ)/∂q² φ x`.
+    fn kick_product(
+        &self,
+        mechanics: &Mechanics<S>,
+        t: f64,
+        q: &S::PerCoordinate<f64>,
+        x: &S::PerCoordinate<f64>,
+    ) -> S::PerCoordinate<f64> {
+        let QuadraticPart { reference, multipliers, .. } = &self.part;
+        let linear = times::<S>(&self.kick, x);
+        let curvature = match &self.filter {
+            None => mechanics.potential_hessian_product(t, q, multipliers, x),
+            Some(filter) => {
+                let filtered = times::<S>(filter, &self.part.displacement(q));
+                let at = Array::from_fn(|i| reference[i] + filtered[i]);
+                let inner = mechanics.potential_hessian_product(t, &at, multipliers, &times::<S>(filter, x));
+                let mut product = Array::from_fn(|_| 0.0);
+                add_transposed::<S>(filter, &inner, &mut product);
+                product
+            }
+        };
+        Array::from_fn(|i| linear[i] - self.half_h * curvature[i])
     }
 }
 
@@ -101,27 +122,42 @@ impl<S: MechanicalSystem> KickDriftKick<S> for ImpulseStep<S> {
     type Coupling = Full;
 
     #[inline]
-    fn kicked_at_start(
+    fn start_kick(
         &self,
         mechanics: &Mechanics<S>,
         t: f64,
         q: &S::PerCoordinate<f64>,
-        p: &S::PerCoordinate<f64>,
     ) -> S::PerCoordinate<f64> {
-        let p = self.kicked(mechanics, t, q, p);
-        self.legendre.moving(&p)
+        self.legendre.moving(&self.kick_at(mechanics, t, q))
     }
 
     #[inline]
-    fn kicked_at_end(
+    fn end_kick(&self, mechanics: &Mechanics<S>, t: f64, q: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
+        self.legendre.canonical(&self.kick_at(mechanics, t, q))
+    }
+
+    #[cfg(feature = "std")]
+    #[inline]
+    fn start_kick_product(
         &self,
         mechanics: &Mechanics<S>,
         t: f64,
         q: &S::PerCoordinate<f64>,
-        p: &S::PerCoordinate<f64>,
+        x: &S::PerCoordinate<f64>,
     ) -> S::PerCoordinate<f64> {
-        let p = self.kicked(mechanics, t, q, p);
-        self.legendre.canonical(&p)
+        self.kick_product(mechanics, t, q, x)
+    }
+
+    #[cfg(feature = "std")]
+    #[inline]
+    fn end_kick_product(
+        &self,
+        mechanics: &Mechanics<S>,
+        t: f64,
+        q: &S::PerCoordinate<f64>,
+        x: &S::PerCoordinate<f64>,
+    ) -> S::PerCoordinate<f64> {
+        self.kick_product(mechanics, t, q, x)
     }
 
     #[inline]

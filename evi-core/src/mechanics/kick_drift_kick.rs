@@ -15,22 +15,35 @@ pub(crate) trait KickDriftKick<S: MechanicalSystem> {
     /// What `D` couples.
     type Coupling: Coupling<S>;
 
-    /// `p½` without constraint forces.
-    fn kicked_at_start(
+    /// `k₀(t₀, q₀)`.
+    fn start_kick(
         &self,
         mechanics: &Mechanics<S>,
         t: f64,
         q: &S::PerCoordinate<f64>,
-        p: &S::PerCoordinate<f64>,
     ) -> S::PerCoordinate<f64>;
 
-    /// `p⁻` from `p½`.
-    fn kicked_at_end(
+    /// `k₁(t₁, q₁)`.
+    fn end_kick(&self, mechanics: &Mechanics<S>, t: f64, q: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64>;
+
+    /// `∂k₀/∂q x` at the start of a step: the product of a symmetric matrix.
+    #[cfg(feature = "std")]
+    fn start_kick_product(
         &self,
         mechanics: &Mechanics<S>,
         t: f64,
         q: &S::PerCoordinate<f64>,
-        p: &S::PerCoordinate<f64>,
+        x: &S::PerCoordinate<f64>,
+    ) -> S::PerCoordinate<f64>;
+
+    /// `∂k₁/∂q x` at the end of a step.
+    #[cfg(feature = "std")]
+    fn end_kick_product(
+        &self,
+        mechanics: &Mechanics<S>,
+        t: f64,
+        q: &S::PerCoordinate<f64>,
+        x: &S::PerCoordinate<f64>,
     ) -> S::PerCoordinate<f64>;
 
     /// `D`: the difference of positions that the momentum `p½` makes is `D p½`.

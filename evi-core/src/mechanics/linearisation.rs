@@ -2,6 +2,8 @@
 //!
 //! Constraints bend the motion: with the multipliers `λ` that hold the scene, `Ω = V_qq + Σ λᵢ (φᵢ)_qq`.
 
+#[cfg(feature = "std")]
+use super::coordinate_matrix::times;
 use super::modes::{Modes, reduced};
 use super::{Directions, Mechanics, ProjectionError, Rows};
 use crate::array::Array;
@@ -164,6 +166,23 @@ impl<S: MechanicalSystem> Mechanics<S> {
             self.add_constraint_force(jacobian.as_ref(), multipliers.as_ref(), gradient.as_mut());
         }
         gradient
+    }
+
+    /// `∂²(V + λᵀφ)/∂q² x` at rest.
+    #[cfg(feature = "std")]
+    pub(crate) fn potential_hessian_product(
+        &self,
+        t: f64,
+        q: &S::PerCoordinate<f64>,
+        multipliers: &S::PerConstraint<f64>,
+        x: &S::PerCoordinate<f64>,
+    ) -> S::PerCoordinate<f64> {
+        let hessian = self.potential_hessian(t, q);
+        let mut product = times::<S>(&hessian, x);
+        self.for_each_constraint_curvature(t, q, multipliers, |row, col, curvature| {
+            product[row] += curvature * x[col];
+        });
+        product
     }
 
     /// `M` at rest, by rows.

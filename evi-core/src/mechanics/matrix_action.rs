@@ -118,6 +118,72 @@ impl<S: MechanicalSystem, const K: usize> MatrixAction<S, K> {
         sum
     }
 
+    /// `∂L_d/∂q₀` and `∂L_d/∂q₁`.
+    #[cfg(feature = "std")]
+    pub(crate) fn end_momenta(
+        &self,
+        start: &StepStart<'_, S>,
+        difference: &S::PerCoordinate<f64>,
+    ) -> [S::PerCoordinate<f64>; 2] {
+        let inertial = self.inertia_times(difference);
+        let at_nodes = self.impulses(start, difference, None);
+        let end = Array::from_fn(|i| start.q[i] + difference[i]);
+        let at_start = times::<S>(&self.kick, &self.part.displacement(start.q));
+        let at_end = times::<S>(&self.kick, &self.part.displacement(&end));
+        let rest = &self.momentum_at_rest;
+        [
+            Array::from_fn(|i| at_start[i] - at_nodes.start[i] - inertial[i] - rest[i]),
+            Array::from_fn(|i| at_end[i] - at_nodes.end[i] + inertial[i] + rest[i]),
+        ]
+    }
+
+    /// The product of the second derivative of `L_d` in `(q₀, q₁)` at the step with a vector.
+    #[cfg(feature = "std")]
+    pub(crate) fn second_derivative_product(
+        &self,
+        t: f64,
+        q: &S::PerCoordinate<f64>,
+        difference: &S::PerCoordinate<f64>,
+        [start, end]: [&S::PerCoordinate<f64>; 2],
+    ) -> [S::PerCoordinate<f64>; 2] {
+        let moved = S::PerCoordinate::<f64>::from_fn(|i| end[i] - start[i]);
+        let inertial = times::<S>(&self.inverse_drift, &moved);
+        let (at_start, at_end) = (times::<S>(&self.kick, start), times::<S>(&self.kick, end));
+        let mut by_start = S::PerCoordinate::<f64>::from_fn(|i| at_start[i] - inertial[i]);
+        let mut by_end = S::PerCoordinate::<f64>::from_fn(|i| at_end[i] + inertial[i]);
+        let half_sum = Array::from_fn(|i| q[i] + 0.5 * difference[i]);
+        let half_sum = self.part.displacement(&half_sum);
+        let mean = Array::from_fn(|i| 0.5 * (start[i] + end[i]));
+        for (j, node) in self.nodes.iter().enumerate() {
+            let at = |half_sum: &_, difference: &_| -> S::PerCoordinate<f64> {
+                let (even, odd) = (times::<S>(&node.even, half_sum), times::<S>(&node.odd, difference));
+                Array::from_fn(|i| even[i] + odd[i])
+            };
+            let (x, rate) = (at(&half_sum, difference), at(&mean, &moved));
+            let x = Array::from_fn(|i| self.part.reference[i] + x[i]);
+            let t = t + (0.5 + self.quadrature.offsets()[j]) * self.h;
+            let whole = self.mechanics.potential_hessian_product(t, &x, &self.part.multipliers, &rate);
+            let linear = times::<S>(&self.part.stiffness, &rate);
+            let rest = Array::from_fn(|i| whole[i] - linear[i]);
+            let (mut even, mut odd) = (Array::from_fn(|_| 0.0), Array::from_fn(|_| 0.0));
+            add_transposed::<S>(&node.even, &rest, &mut even);
+            add_transposed::<S>(&node.odd, &rest, &mut odd);
+            let weight = self.h * self.quadrature.weights()[j];
+            for i in 0..S::N_COORDINATES {
+                by_start[i] -= weight * (0.5 * even[i] - odd[i]);
+                by_end[i] -= weight * (0.5 * even[i] + odd[i]);
+            }
+        }
+        [by_start, by_end]
+    }
+
+    /// Whether the matrix of the step is the derivative of its equations: not where it holds a curvature of constraints that changes between the nodes.
+    #[cfg(feature = "std")]
+    pub(crate) fn has_exact_matrix(&self) -> bool {
+        // Equality to the exact zeros of a part without multipliers.
+        S::STRUCTURE.has_quadratic_constraints() || self.part.multipliers.as_ref().iter().all(|x| *x == 0.0)
+    }
+
     /// Adds `weight g₁ᵀ U'' g₂`, `g₁ = ½ even − odd`, `g₂ = ½ even + odd`.
     fn add_hessian(&self, node: &Node<S>, weight: f64, hessian: &Rows<S>, kkt: &mut Kkt<S>) {
         let n = S::N_COORDINATES;

@@ -123,14 +123,16 @@ mod dual;
 #[cfg(feature = "std")]
 mod instruction_set;
 mod lanes;
+#[cfg(feature = "std")]
+mod rates;
 mod tangent;
 
 #[cfg(feature = "std")]
-pub use instruction_set::InstructionSet;
-#[cfg(feature = "std")]
-pub(crate) use instruction_set::LaneOperation;
+pub use instruction_set::{InstructionSet, LaneOperation};
 pub use lanes::{LANES, Lanes};
-pub(crate) use tangent::Tangent;
+#[cfg(feature = "std")]
+pub(crate) use rates::Rates;
+pub(crate) use tangent::{Rate, Tangent};
 
 #[cfg(test)]
 mod tests {

@@ -1,29 +1,67 @@
-//! Numbers with a rate of change: forward-mode derivatives along one direction.
+//! Numbers with rates of change: forward-mode derivatives along one direction or several.
 
+use core::fmt::Debug;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::Scalar;
 
-/// A number and its derivative along a direction. Kernels that are evaluated on tangents give their derivatives along it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Tangent {
-    pub(crate) value: f64,
-    pub(crate) rate: f64,
+/// The derivatives of a number along one direction, or along several side by side.
+pub(crate) trait Rate:
+    Copy + Debug + Add<Output = Self> + Sub<Output = Self> + Neg<Output = Self>
+{
+    /// Of what stays as it is.
+    const ZERO: Self;
+
+    /// Times a number.
+    fn times(self, factor: f64) -> Self;
+
+    /// Times a number that need not exist where the rate is exactly zero.
+    fn times_if_moving(self, factor: f64) -> Self;
 }
 
-impl Tangent {
-    pub(crate) const fn new(value: f64, rate: f64) -> Self {
+impl Rate for f64 {
+    const ZERO: Self = 0.0;
+
+    #[inline]
+    fn times(self, factor: f64) -> Self {
+        self * factor
+    }
+
+    #[inline]
+    fn times_if_moving(self, factor: f64) -> Self {
+        // Equality to the exact zero of `from_f64`.
+        if self == 0.0 { 0.0 } else { self * factor }
+    }
+}
+
+/// A number and its derivative along a direction, or along several. Kernels that are evaluated on tangents give their derivatives along it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Tangent<R = f64> {
+    pub(crate) value: f64,
+    pub(crate) rate: R,
+}
+
+impl<R> Tangent<R> {
+    pub(crate) const fn new(value: f64, rate: R) -> Self {
         Self { value, rate }
+    }
+}
+
+impl<R: Rate> Tangent<R> {
+    /// A number that stays as it is.
+    #[inline]
+    pub(crate) const fn still(value: f64) -> Self {
+        Self { value, rate: R::ZERO }
     }
 
     /// `f(self)` from the value and the derivative of `f`.
     #[inline]
-    const fn chain(self, value: f64, derivative: f64) -> Self {
-        Self { value, rate: derivative * self.rate }
+    fn chain(self, value: f64, derivative: f64) -> Self {
+        Self { value, rate: self.rate.times(derivative) }
     }
 }
 
-impl Add for Tangent {
+impl<R: Rate> Add for Tangent<R> {
     type Output = Self;
 
     #[inline]
@@ -32,7 +70,7 @@ impl Add for Tangent {
     }
 }
 
-impl Sub for Tangent {
+impl<R: Rate> Sub for Tangent<R> {
     type Output = Self;
 
     #[inline]
@@ -41,26 +79,29 @@ impl Sub for Tangent {
     }
 }
 
-impl Mul for Tangent {
+impl<R: Rate> Mul for Tangent<R> {
     type Output = Self;
 
     #[inline]
     fn mul(self, other: Self) -> Self {
-        Self { value: self.value * other.value, rate: self.rate * other.value + self.value * other.rate }
+        Self {
+            value: self.value * other.value,
+            rate: self.rate.times(other.value) + other.rate.times(self.value),
+        }
     }
 }
 
-impl Div for Tangent {
+impl<R: Rate> Div for Tangent<R> {
     type Output = Self;
 
     #[inline]
     fn div(self, other: Self) -> Self {
         let value = self.value / other.value;
-        Self { value, rate: (self.rate - value * other.rate) / other.value }
+        Self { value, rate: (self.rate - other.rate.times(value)).times(1.0 / other.value) }
     }
 }
 
-impl Neg for Tangent {
+impl<R: Rate> Neg for Tangent<R> {
     type Output = Self;
 
     #[inline]
@@ -69,10 +110,10 @@ impl Neg for Tangent {
     }
 }
 
-impl Scalar for Tangent {
+impl<R: Rate> Scalar for Tangent<R> {
     #[inline]
     fn from_f64(value: f64) -> Self {
-        Self { value, rate: 0.0 }
+        Self::still(value)
     }
 
     #[inline]
@@ -89,9 +130,9 @@ impl Scalar for Tangent {
         let x = self.value;
         let value = Scalar::powf(x, exponent.value);
         let by_base = exponent.value * Scalar::powf(x, exponent.value - 1.0);
-        // A constant exponent asks for no logarithm, which a base of zero does not have. Equality to the exact zero of `from_f64`.
-        let by_exponent = if exponent.rate == 0.0 { 0.0 } else { value * Scalar::ln(x) * exponent.rate };
-        Self { value, rate: by_base * self.rate + by_exponent }
+        // A constant exponent asks for no logarithm, which a base of zero does not have.
+        let by_exponent = exponent.rate.times_if_moving(value * Scalar::ln(x));
+        Self { value, rate: self.rate.times(by_base) + by_exponent }
     }
 
     #[inline]
@@ -155,7 +196,7 @@ impl Scalar for Tangent {
         let squares = self.value * self.value + x.value * x.value;
         Self {
             value: Scalar::atan2(self.value, x.value),
-            rate: (x.value * self.rate - self.value * x.rate) / squares,
+            rate: (self.rate.times(x.value) - x.rate.times(self.value)).times(1.0 / squares),
         }
     }
 

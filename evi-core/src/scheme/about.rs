@@ -18,6 +18,8 @@ where
     S: MechanicalSystem<PerCoordinate<f64> = [f64; N]>,
     F: Interpolant<S>,
 {
+    const FOLLOWS_PARAMETERS: bool = F::FOLLOWS_PARAMETERS;
+
     type Table<const K: usize> = AboutTable<F::Table<K>, N>;
 
     fn frequency(&self, constants: &S::PerConstant<f64>, coordinate: usize) -> Frequency {

@@ -136,6 +136,8 @@ pub trait InterpolationTable {
 pub trait Interpolant<S: MechanicalSystem> {
     /// Whether the curves are straight lines, known at compile time.
     const IS_STRAIGHT: bool = false;
+    /// Whether the curves depend on parameters of the scene, so that a step is a function of these through its tables, too.
+    const FOLLOWS_PARAMETERS: bool = false;
 
     /// The coefficients at `K` nodes.
     type Table<const K: usize>: InterpolationTable;

@@ -11,6 +11,8 @@ use crate::system::HasFrequencies;
 pub struct SceneFrequencies;
 
 impl<S: HasFrequencies> Interpolant<S> for SceneFrequencies {
+    const FOLLOWS_PARAMETERS: bool = true;
+
     type Table<const K: usize> = SceneTable<S, K>;
 
     fn frequency(&self, constants: &S::PerConstant<f64>, coordinate: usize) -> Frequency {

@@ -12,7 +12,7 @@ use crate::memory::memory;
 use crate::scalar::InstructionSet;
 use crate::scheme::{Frequency, Linear, NodalCurves, SchemeError, checked_step_size};
 use crate::system::MechanicalSystem;
-use newton::NewtonSolve;
+pub(crate) use newton::NewtonSolve;
 use passes::LanePasses;
 use points::PointSteps;
 
@@ -68,6 +68,11 @@ impl<const K: usize, F> Galerkin<K, F> {
     pub fn by_newton(self) -> Self {
         Self { by_newton: true, ..self }
     }
+
+    /// Whether [`by_newton`](Self::by_newton) has been called.
+    pub(crate) const fn is_by_newton(&self) -> bool {
+        self.by_newton
+    }
 }
 
 impl<const K: usize, F: Clone> Symmetric for Galerkin<K, F> {
@@ -119,6 +124,11 @@ pub struct GalerkinStep<S: MechanicalSystem, F: NodalCurves<S>, const K: usize> 
 }
 
 impl<S: MechanicalSystem, F: NodalCurves<S>, const K: usize> GalerkinStep<S, F, K> {
+    /// The action of a step.
+    pub(crate) const fn action(&self) -> &GalerkinAction<S, F::Tables<K>, K> {
+        &self.action
+    }
+
     /// How its steps are solved: which iteration, in which vector instructions; to be printed.
     pub fn iteration(&self) -> Iteration {
         match (&self.passes, &self.points) {

@@ -3,7 +3,7 @@
 
 use crate::array::Array;
 use crate::integrator::{IterationFailure, StepError, Tally};
-use crate::linear::{InPlaceLu, constraint_index, largest_magnitude};
+use crate::linear::{InPlaceLu, SingularMatrix, constraint_index, largest_magnitude};
 use crate::mechanics::{GalerkinAction, Points, State, relative};
 use crate::memory::memory;
 use crate::newton::{self, Converged};
@@ -11,7 +11,7 @@ use crate::scheme::NodalTables;
 use crate::system::MechanicalSystem;
 
 /// Newton's iteration with its first guesses.
-pub(super) struct NewtonSolve<S: MechanicalSystem, const K: usize> {
+pub(crate) struct NewtonSolve<S: MechanicalSystem, const K: usize> {
     extrapolation: Extrapolation<K>,
     storage: NewtonStorage,
     /// The points of the last step: the first guess of the next. They affect the number of corrections and the last bits of a
@@ -20,7 +20,7 @@ pub(super) struct NewtonSolve<S: MechanicalSystem, const K: usize> {
 }
 
 impl<S: MechanicalSystem, const K: usize> NewtonSolve<S, K> {
-    pub(super) fn new<T: NodalTables<K>>(action: &GalerkinAction<S, T, K>) -> Self {
+    pub(crate) fn new<T: NodalTables<K>>(action: &GalerkinAction<S, T, K>) -> Self {
         Self { extrapolation: Extrapolation::new(action), storage: NewtonStorage::new(action), past: None }
     }
 
@@ -35,7 +35,7 @@ impl<S: MechanicalSystem, const K: usize> NewtonSolve<S, K> {
     /// At large steps a continued polynomial ends anywhere, and Newton's iteration from there at another solution of the
     /// equations (double pendulum from the horizontal, h = 0.1: the step equations are lost after 100 to 1,000 steps). Near the parabola
     /// it saves up to one correction in three for large `K`.
-    pub(super) fn solve<T: NodalTables<K>>(
+    pub(crate) fn solve<T: NodalTables<K>>(
         &mut self,
         action: &GalerkinAction<S, T, K>,
         state: &State<S>,
@@ -53,6 +53,52 @@ impl<S: MechanicalSystem, const K: usize> NewtonSolve<S, K> {
         }
         self.storage.iterate(action, state, &scale, &mut points, tally)?;
         Ok(points)
+    }
+
+    /// Factors the matrix of the equations at `points` of the step from `state`.
+    pub(crate) fn factor<T: NodalTables<K>>(
+        &mut self,
+        action: &GalerkinAction<S, T, K>,
+        state: &State<S>,
+        points: &Points<S, K>,
+    ) -> Result<FactoredPoints<'_, S, K>, SingularMatrix> {
+        let scale = action.mechanics.unit_scale(state.t, &state.q, &state.v);
+        self.storage.linearize(action, state, scale.as_ref(), points);
+        self.storage.factors.factor(&mut self.storage.entries)?;
+        Ok(FactoredPoints { storage: &mut self.storage, scale })
+    }
+}
+
+/// The factored matrix of the equations of a step.
+pub(crate) struct FactoredPoints<'a, S: MechanicalSystem, const K: usize> {
+    storage: &'a mut NewtonStorage,
+    scale: S::PerUnknown<f64>,
+}
+
+impl<S: MechanicalSystem, const K: usize> FactoredPoints<'_, S, K> {
+    /// Overwrites right-hand sides, node by node, with the solution.
+    pub(crate) fn solve(&mut self, rows: &mut [S::PerUnknown<f64>; K]) {
+        self.solve_by(rows, |factors, entries, rhs| factors.solve(entries, rhs));
+    }
+
+    /// The same for the transposed matrix.
+    pub(crate) fn solve_transposed(&mut self, rows: &mut [S::PerUnknown<f64>; K]) {
+        self.solve_by(rows, |factors, entries, rhs| factors.solve_transposed(entries, rhs));
+    }
+
+    fn solve_by(
+        &mut self,
+        rows: &mut [S::PerUnknown<f64>; K],
+        solve: impl FnOnce(&InPlaceLu, &[f64], &mut [f64]),
+    ) {
+        let block = S::PerUnknown::<f64>::LEN;
+        for (residual, row) in self.storage.residual.chunks_exact_mut(block).zip(&*rows) {
+            residual.copy_from_slice(row.as_ref());
+        }
+        self.storage.solve_by(self.scale.as_ref(), solve);
+        for (residual, row) in self.storage.residual.chunks_exact(block).zip(rows) {
+            row.as_mut().copy_from_slice(residual);
+        }
     }
 }
 
@@ -170,6 +216,42 @@ impl NewtonStorage {
         }
     }
 
+    /// Overwrites the residual, and the matrix in units in which its unknowns are comparable; returns the largest residual of a constraint.
+    fn linearize<S: MechanicalSystem, T: NodalTables<K>, const K: usize>(
+        &mut self,
+        action: &GalerkinAction<S, T, K>,
+        state: &State<S>,
+        scale: &[f64],
+        points: &Points<S, K>,
+    ) -> f64 {
+        let block = scale.len();
+        let constraint_residual = action.linearize(state, points, &mut self.residual, &mut self.entries);
+        for (column, &col) in self.entries.chunks_exact_mut(self.residual.len()).zip(&self.indices) {
+            for (entry, &row) in column.iter_mut().zip(&self.indices) {
+                *entry *= scale[row % block] * scale[col % block];
+            }
+        }
+        constraint_residual
+    }
+
+    /// Overwrites the residual with what `solve` makes of it by the factors, in their order and units.
+    fn solve_by(&mut self, scale: &[f64], solve: impl FnOnce(&InPlaceLu, &[f64], &mut [f64])) {
+        let apply_scale = |unknowns: &mut [f64]| {
+            for unknowns in unknowns.chunks_exact_mut(scale.len()) {
+                unknowns.iter_mut().zip(scale).for_each(|(unknown, scale)| *unknown *= scale);
+            }
+        };
+        apply_scale(&mut self.residual);
+        for (value, &index) in self.ordered.iter_mut().zip(&self.indices) {
+            *value = self.residual[index];
+        }
+        solve(&self.factors, &self.entries, &mut self.ordered);
+        for (value, &index) in self.ordered.iter().zip(&self.indices) {
+            self.residual[index] = *value;
+        }
+        apply_scale(&mut self.residual);
+    }
+
     /// Corrects `points` until they solve the equations of the step from `state`.
     fn iterate<S: MechanicalSystem, T: NodalTables<K>, const K: usize>(
         &mut self,
@@ -186,31 +268,13 @@ impl NewtonStorage {
         let mut smallest_pivot_ratio = 1.0_f64;
         tally.begin_iteration();
         let iteration = newton::iterate(|correction| {
-            constraint_residual = action.linearize(state, points, &mut self.residual, &mut self.entries);
-            for (column, &col) in self.entries.chunks_exact_mut(self.residual.len()).zip(&self.indices) {
-                for (entry, &row) in column.iter_mut().zip(&self.indices) {
-                    *entry *= scale[row % block] * scale[col % block];
-                }
-            }
-            let apply_scale = |unknowns: &mut [f64]| {
-                for unknowns in unknowns.chunks_exact_mut(block) {
-                    unknowns.iter_mut().zip(scale.as_ref()).for_each(|(unknown, scale)| *unknown *= scale);
-                }
-            };
+            constraint_residual = self.linearize(action, state, scale.as_ref(), points);
             self.factors
                 .factor(&mut self.entries)
                 .map_err(|matrix| IterationFailure::Singular { correction, matrix })?;
             smallest_pivot_ratio = smallest_pivot_ratio.min(self.factors.pivot_ratio());
             tally.see_pivot_ratio(self.factors.pivot_ratio());
-            apply_scale(&mut self.residual);
-            for (value, &index) in self.ordered.iter_mut().zip(&self.indices) {
-                *value = self.residual[index];
-            }
-            self.factors.solve(&self.entries, &mut self.ordered);
-            for (value, &index) in self.ordered.iter().zip(&self.indices) {
-                self.residual[index] = *value;
-            }
-            apply_scale(&mut self.residual);
+            self.solve_by(scale.as_ref(), |factors, entries, rhs| factors.solve(entries, rhs));
             let mut length = 0.0_f64;
             let mut reach = in_units(state.q.as_ref());
             for (a, update) in self.residual.chunks_exact(block).enumerate() {

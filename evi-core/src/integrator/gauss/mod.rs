@@ -11,7 +11,7 @@ use crate::memory::memory;
 use crate::scalar::{InstructionSet, Lanes};
 use crate::scheme::{PAST, SchemeError, checked_step_size};
 use crate::system::MechanicalSystem;
-use newton::GaussNewton;
+pub(crate) use newton::GaussNewton;
 
 /// The Gauss collocation method with `K` nodes, `1 ≤ K ≤ 8`, in canonical variables: the Galerkin integrator on polynomials of degree `K` with Gauss
 /// quadrature.

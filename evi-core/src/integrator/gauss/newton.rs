@@ -10,14 +10,14 @@ use core::marker::PhantomData;
 
 use crate::array::Array;
 use crate::integrator::{IterationFailure, StepError, Tally};
-use crate::linear::{InPlaceLu, largest_magnitude};
+use crate::linear::{InPlaceLu, SingularMatrix, largest_magnitude};
 use crate::mechanics::{ForcePoint, GaussEnd, Mechanics, State, relative};
 use crate::newton::{self, Converged};
 use crate::scheme::GaussTables;
 use crate::system::MechanicalSystem;
 
 /// The iteration with its storage.
-pub(super) struct GaussNewton<S, const K: usize> {
+pub(crate) struct GaussNewton<S, const K: usize> {
     tables: GaussTables,
     /// The matrix by columns; its factors while a correction is computed.
     entries: Vec<f64>,
@@ -29,7 +29,7 @@ pub(super) struct GaussNewton<S, const K: usize> {
 }
 
 impl<S: MechanicalSystem, const K: usize> GaussNewton<S, K> {
-    pub(super) fn new(h: f64) -> Self {
+    pub(crate) fn new(h: f64) -> Self {
         let dimension = K * S::N_COORDINATES;
         Self {
             tables: GaussTables::new::<K>(h),
@@ -42,7 +42,7 @@ impl<S: MechanicalSystem, const K: usize> GaussNewton<S, K> {
     }
 
     /// What the step from `start` changes.
-    pub(super) fn solve(
+    pub(crate) fn solve(
         &mut self,
         mechanics: &Mechanics<S>,
         start: &State<S>,
@@ -89,7 +89,7 @@ impl<S: MechanicalSystem, const K: usize> GaussNewton<S, K> {
     }
 
     /// `h Aᵢⱼ`.
-    fn stage(&self, i: usize, j: usize) -> f64 {
+    pub(crate) fn stage(&self, i: usize, j: usize) -> f64 {
         self.tables.stages[j].to_array()[i]
     }
 
@@ -99,6 +99,60 @@ impl<S: MechanicalSystem, const K: usize> GaussNewton<S, K> {
         let way = |k: usize| (0..K).map(|j| self.stage(i, j) * velocity(j, k)).sum::<f64>();
         let q = Array::from_fn(|k| start.q[k] + way(k));
         (start.t + self.tables.nodes.to_array()[i], q, Array::from_fn(|k| velocity(i, k)))
+    }
+
+    /// `h bᵢ`.
+    pub(crate) fn weight(&self, i: usize) -> f64 {
+        self.tables.weights.to_array()[i]
+    }
+
+    /// `h cᵢ`.
+    pub(crate) fn time(&self, i: usize) -> f64 {
+        self.tables.nodes.to_array()[i]
+    }
+
+    /// `Vᵢ` of the last step that was solved.
+    pub(crate) fn velocities(&self) -> [S::PerCoordinate<f64>; K] {
+        let n = S::N_COORDINATES;
+        core::array::from_fn(|node| Array::from_fn(|k| self.velocities[node * n + k]))
+    }
+
+    /// Factors the matrix of the equations at these velocities of the step from `start`.
+    pub(crate) fn factor(
+        &mut self,
+        mechanics: &Mechanics<S>,
+        start: &State<S>,
+        velocities: &[S::PerCoordinate<f64>; K],
+    ) -> Result<(), SingularMatrix> {
+        for (own, given) in self.velocities.chunks_exact_mut(S::N_COORDINATES).zip(velocities) {
+            own.copy_from_slice(given.as_ref());
+        }
+        self.linearize(mechanics, start);
+        self.factors.factor(&mut self.entries)
+    }
+
+    /// Overwrites right-hand sides, node by node, with the solution for the factored matrix.
+    pub(crate) fn solve_rows(&mut self, rows: &mut [S::PerCoordinate<f64>; K]) {
+        self.solve_by(rows, |factors, entries, rhs| factors.solve(entries, rhs));
+    }
+
+    /// The same for the transposed matrix.
+    pub(crate) fn solve_transposed_rows(&mut self, rows: &mut [S::PerCoordinate<f64>; K]) {
+        self.solve_by(rows, |factors, entries, rhs| factors.solve_transposed(entries, rhs));
+    }
+
+    fn solve_by(
+        &mut self,
+        rows: &mut [S::PerCoordinate<f64>; K],
+        solve: impl FnOnce(&InPlaceLu, &[f64], &mut [f64]),
+    ) {
+        for (own, row) in self.residual.chunks_exact_mut(S::N_COORDINATES).zip(&*rows) {
+            own.copy_from_slice(row.as_ref());
+        }
+        solve(&self.factors, &self.entries, &mut self.residual);
+        for (own, row) in self.residual.chunks_exact(S::N_COORDINATES).zip(rows) {
+            row.as_mut().copy_from_slice(own);
+        }
     }
 
     /// Overwrites `residual` with the left sides of the equations and `entries` with their derivative.

@@ -1,0 +1,96 @@
+//! What has no derivative says so.
+
+use evi_core::prelude::*;
+use evi_core::sensitivity::{
+    Course, DerivativeError, Differentiate, Direction, LyapunovRun, ParameterChoice, StateGradient,
+};
+use evi_examples::DoublePendulum;
+use evi_tests::scenes::DampedOscillator;
+
+const SYSTEM: DoublePendulum = DoublePendulum::UNIT;
+
+fn nothing<S: MechanicalSystem>(_: u64, _: &State<S>, _: &mut StateGradient<S>) -> f64 {
+    0.0
+}
+
+#[test]
+fn an_unknown_parameter() {
+    let error = ParameterChoice::of::<DoublePendulum>(&["m1", "m3"]).expect_err("no such field");
+    assert_eq!(error.to_string(), r#"no parameter is called `m3`; there are ["m1", "m2", "l1", "l2", "g"]"#);
+    assert!(Direction::<DoublePendulum>::of_parameter("mass").is_err());
+}
+
+#[test]
+fn parameters_that_the_tables_of_a_scheme_follow() {
+    let oscillator = DampedOscillator::STANDARD;
+    let simulation = Simulation::new(oscillator, Evi::simpson(0.1).scene_frequencies());
+    let direction = Direction::of_parameter("k").expect("a field");
+    let error = simulation.start_with_tangents([1.0], [0.0], &[direction]).err();
+    assert!(matches!(error, Some(DerivativeError::Parameters { .. })), "{error:?}");
+    let course = Course::new([1.0], [0.0], 3).by_parameters(ParameterChoice::all::<DampedOscillator>());
+    let error = simulation.gradient_of(&course, &nothing).err();
+    assert!(matches!(error, Some(DerivativeError::Parameters { .. })), "{error:?}");
+    // By the start there is no doubt.
+    let direction = Direction::of_start([1.0], [0.0]);
+    assert!(simulation.start_with_tangents([1.0], [0.0], &[direction]).is_ok());
+}
+
+#[test]
+fn inputs_that_are_not_one_list_per_step() {
+    let simulation = Simulation::new(DampedOscillator::STANDARD, Evi::midpoint(0.1));
+    let course = Course::new([1.0], [0.0], 3).with_inputs(vec![[0.0]; 4]);
+    let error = simulation.gradient_of(&course, &nothing).err();
+    assert_eq!(error, Some(DerivativeError::InputCount { steps: 3, found: 4 }));
+    assert_eq!(
+        simulation.cost_of(&course, &nothing),
+        Err(DerivativeError::InputCount { steps: 3, found: 4 })
+    );
+}
+
+#[test]
+fn more_exponents_than_the_motion_has_directions() {
+    let start = SYSTEM.at_angles(2.0, 2.5);
+    let simulation = Simulation::new(SYSTEM, Evi::midpoint(0.05));
+    for (count, every) in [(5, 1), (0, 1), (1, 0)] {
+        let error = LyapunovRun::new(&simulation, start.q, start.v, count, every).err();
+        assert_eq!(error, Some(DerivativeError::Dimension { asked: count, dimension: 4 }));
+    }
+}
+
+#[test]
+fn directions_that_are_no_numbers() {
+    let start = SYSTEM.at_angles(2.0, 2.5);
+    let simulation = Simulation::new(SYSTEM, Evi::midpoint(0.05));
+    let direction = Direction::of_start([f64::NAN; 4], [0.0; 4]);
+    let error = simulation.start_with_tangents(start.q, start.v, &[direction]).err();
+    assert_eq!(error, Some(DerivativeError::NotFinite { t: 0.0 }));
+}
+
+#[test]
+fn a_start_beside_the_constraints() {
+    let simulation = Simulation::new(SYSTEM, Evi::midpoint(0.05));
+    let error = simulation.gradient_of(&Course::new([0.5, 0.0, 2.0, 0.0], [0.0; 4], 3), &nothing).err();
+    assert!(
+        matches!(error, Some(DerivativeError::Start(StartError::InconsistentPosition { .. }))),
+        "{error:?}"
+    );
+}
+
+/// A step without solution: state and vectors stand where they stood.
+#[test]
+fn a_step_that_fails() {
+    let start = SYSTEM.horizontal();
+    let simulation = Simulation::new(SYSTEM, Evi::midpoint(1.5));
+    let direction = Direction::of_start([0.0; 4], [0.0, 1.0, 0.0, 1.0]);
+    let mut run = simulation.start_with_tangents(start.q, start.v, &[direction]).expect("a start");
+    let mut before = (run.state().clone(), *run.tangents()[0].q());
+    let error = loop {
+        match run.advance() {
+            Ok(_) => before = (run.state().clone(), *run.tangents()[0].q()),
+            Err(error) => break error,
+        }
+        assert!(run.run().steps() < 1_000, "vacuous: no step fails");
+    };
+    assert!(matches!(error, DerivativeError::Step(StepError::NoSolution { .. })), "{error:?}");
+    assert!(run.state() == &before.0 && *run.tangents()[0].q() == before.1);
+}
