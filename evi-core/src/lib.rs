@@ -43,6 +43,7 @@
 //! | `derive` | yes | re-exports `#[derive(MechanicalSystem)]` |
 //! | `serde` | no | [`integrator::Checkpoint`] can be serialised |
 //! | `source` | no | [`system::MechanicalSystem::SOURCE`] holds the generated code, to read |
+//! | `argmin` | no | `sensitivity::Objective` is a cost function with a gradient of the crate argmin |
 //! | `generic` | no | `generic::GenericEvi` for systems of run-time size; [`scalar::Scalar`] for the dual numbers of num-dual |
 
 #![cfg_attr(not(feature = "std"), no_std)]

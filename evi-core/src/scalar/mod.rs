@@ -134,7 +134,9 @@ pub(crate) use instruction_set::LaneOperation;
 pub use lanes::{LANES, Lanes};
 #[cfg(feature = "std")]
 pub(crate) use rates::Rates;
-pub(crate) use tangent::{Rate, Tangent};
+#[cfg(feature = "std")]
+pub(crate) use tangent::Rate;
+pub(crate) use tangent::Tangent;
 
 #[cfg(test)]
 mod tests {
