@@ -101,7 +101,7 @@ fn instructions(case: usize, with_gradient: bool, steps: u64) -> Option<u64> {
     let output = Command::new("valgrind")
         .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
         .arg(std::env::current_exe().ok()?)
-        .args(["--exact", "cost::steps_to_count", "--ignored", "--test-threads=1"])
+        .args(["--exact", "steps_to_count", "--ignored", "--test-threads=1"])
         .env(CASE, format!("{case} {} {steps}", u64::from(with_gradient)))
         .output()
         .ok()?;
