@@ -12,6 +12,7 @@ use std::cell::Cell;
 use std::hint::black_box;
 use std::time::Duration;
 
+use evi_core::assembled::{AssembledScheme, AssembledSimulation};
 use evi_core::baseline::{GeneralizedAlpha, ImplicitMidpoint, Rattle, Rk4, Shake};
 use evi_core::generic::{GenericEvi, GenericGalerkin, GenericScheme, GenericSystem};
 use evi_core::integrator::{Diagnostics, OfRank};
@@ -22,6 +23,7 @@ use evi_examples::{
     StiffSpringPendulum,
 };
 use evi_tests::scenes::{DampedOscillator, PushedDumbbell};
+use evi_tests::trusses::{Placed, chain, net, ring};
 
 thread_local! {
     // Constant and without destructor: its first use allocates nothing.
@@ -311,4 +313,29 @@ fn a_step_that_is_taken_in_parts_does_not_allocate() {
 #[test]
 fn no_step_on_a_null_space_allocates() {
     check(OfRank::<_, 2>(DOUBLE), Evi::midpoint(0.01), mild());
+}
+
+/// Takes 50 steps of an assembled scene and expects that none allocates.
+#[track_caller]
+fn check_assembled(placed: Placed, scheme: impl AssembledScheme) {
+    let Placed { truss, q } = placed;
+    let rest = vec![0.0; q.len()];
+    let mut run = AssembledSimulation::new(truss, scheme).start(q, rest).expect("the start is consistent");
+    let before = run.state().clone();
+    let allocations = allocations(|| {
+        for _ in 0..50 {
+            run.advance().expect("the step exists");
+        }
+    });
+    assert_eq!(allocations, 0);
+    assert_ne!(*run.state(), before, "the run stood still");
+}
+
+#[test]
+fn no_step_of_an_assembled_scene_allocates() {
+    check_assembled(chain(20), Evi::midpoint(0.002));
+    check_assembled(ring(10), Evi::midpoint(0.01).composed(Composition::suzuki_4()));
+    check_assembled(net(3), Evi::midpoint(0.01));
+    check_assembled(net(3), Evi::trapezoid(0.01));
+    check_assembled(net(3), Galerkin::<8>::new(0.02));
 }

@@ -1,4 +1,4 @@
-//! Writes the systems that `kernels.rs` checks: one per operator of the grammar, 200 random ones, a large
+//! Writes the systems that `kernels/` checks: one per operator of the grammar, 200 random ones, a large
 //! one.
 //!
 //! Out: `kernel_scenes.rs` in `OUT_DIR`, with every struct and the function `scenes` that lists them.

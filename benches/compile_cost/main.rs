@@ -1,4 +1,5 @@
-//! What the derive costs a build: seconds over the same crate without it, for scenes of 2 to 60 coordinates.
+//! What the derive costs a build: seconds over the same crate without it, for scenes of 2 to 60 coordinates, and in
+//! loops of 20,000.
 //!
 //! `cargo run --release --example compile_cost -- --out DIR [--quick]`. Out: a table, and `compile_cost.csv` in DIR. A
 //! throw-away crate that depends on evi-core is built again and again, with nothing but its own source to compile: without the
@@ -55,17 +56,21 @@ const AGREEMENT: f64 = 1e-12;
 fn main() -> Result<(), Box<dyn Error>> {
     let Options { out, quick } = Options::parse();
     std::fs::create_dir_all(&out).map_err(|error| format!("cannot create {}: {error}", out.display()))?;
-    let (repetitions, dense, sparse): (usize, &[usize], &[usize]) =
-        if quick { (1, &[2], &[]) } else { (3, &[2, 10, 20, 40, 60], &[2, 10, 20, 40, 60]) };
+    let (repetitions, dense, sparse, looped): (usize, &[usize], &[usize], &[usize]) = if quick {
+        (1, &[2], &[], &[20])
+    } else {
+        (3, &[2, 10, 20, 40, 60], &[2, 10, 20, 40, 60], &[20, 1_000, 10_000])
+    };
     let scenes = std::iter::once(Scene::double_pendulum())
         .chain(dense.iter().map(|&n| Scene::rotators(n)))
-        .chain(sparse.iter().map(|&n| Scene::chain(n)));
+        .chain(sparse.iter().map(|&n| Scene::chain(n)))
+        .chain(looped.iter().map(|&bodies| Scene::chain_in_loops(bodies)));
 
     let csv = out.join("compile_cost.csv");
     let mut writer = csv::Writer::from_path(&csv)?;
     let bench = Bench::new()?;
     println!(
-        "{:<16} {:>3} {:>3} {:>10}  {:<8} {:>6} {:>8} {:>8} {:>10}",
+        "{:<16} {:>5} {:>5} {:>10}  {:<8} {:>6} {:>8} {:>8} {:>10}",
         "scene", "n", "m", "statements", "profile", "bare", "+ derive", "+ run", "expansion"
     );
     for scene in scenes {
@@ -132,7 +137,7 @@ fn measured(
 fn print(row: &Row) {
     let expansion = row.expansion.map_or("not told".to_owned(), |seconds| format!("{seconds:.3}"));
     println!(
-        "{:<16} {:>3} {:>3} {:>10}  {:<8} {:>6.2} {:>8.2} {:>8.2} {:>10}",
+        "{:<16} {:>5} {:>5} {:>10}  {:<8} {:>6.2} {:>8.2} {:>8.2} {:>10}",
         row.scene,
         row.coordinates,
         row.constraints,

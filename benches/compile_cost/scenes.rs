@@ -11,8 +11,10 @@ pub(crate) struct Scene {
     items: String,
     /// Fields with their values.
     fields: &'static [(&'static str, &'static str)],
-    /// Positions of the start, at rest.
+    /// Positions of the start, at rest: an expression.
     start: String,
+    /// Number of bodies, where it is the named constant `N`, and what is repeated is a loop.
+    bodies: Option<usize>,
 }
 
 /// What a crate holds.
@@ -42,7 +44,8 @@ impl Scene {
             n_constraints: 2,
             items: items.to_owned(),
             fields: &[("m1", "1.0"), ("m2", "0.5"), ("l1", "1.0"), ("l2", "0.8"), ("g", "9.81")],
-            start: "1.0, 0.0, 1.8, 0.0".to_owned(),
+            start: "[1.0, 0.0, 1.8, 0.0]".to_owned(),
+            bodies: None,
         }
     }
 
@@ -63,7 +66,8 @@ impl Scene {
             couplings.join(" + ")
         );
         let fields = &[("inertia", "1.5"), ("k", "0.8")];
-        Self { name: "rotators", n_coordinates: n, n_constraints: 0, items, fields, start: start.join(", ") }
+        let start = format!("[{}]", start.join(", "));
+        Self { name: "rotators", n_coordinates: n, n_constraints: 0, items, fields, start, bodies: None }
     }
 
     /// A hanging chain of point masses and rods in `n` coordinates, two a mass: sparse matrices, neighbours alone are coupled.
@@ -88,7 +92,34 @@ impl Scene {
         }
         let fields = &[("m", "1.5"), ("g", "9.81"), ("l", "0.5")];
         let start = all(&|k| format!("{:.1}, 0.0", 0.5 * (k + 1) as f64), ", ");
-        Self { name: "chain", n_coordinates: 2 * masses, n_constraints: masses, items, fields, start }
+        let start = format!("[{start}]");
+        Self {
+            name: "chain",
+            n_coordinates: 2 * masses,
+            n_constraints: masses,
+            items,
+            fields,
+            start,
+            bodies: None,
+        }
+    }
+
+    /// The same chain with as many point masses as a named constant says.
+    pub(crate) fn chain_in_loops(masses: usize) -> Self {
+        let items = "coordinates(p: [N, 2]),
+            kinetic = 0.5 * m * sum(0..N, |i| der(p[i]).norm_squared()),
+            potential = m * g * sum(0..N, |i| p[i][1]),
+            constraint(first: p[0].norm_squared() == l.powi(2)),
+            constraint(rod[i in 1..N]: (p[i] - p[i - 1]).norm_squared() == l.powi(2)),";
+        Self {
+            name: "chain_in_loops",
+            n_coordinates: 2 * masses,
+            n_constraints: masses,
+            items: items.to_owned(),
+            fields: &[("m", "1.5"), ("g", "9.81"), ("l", "0.5")],
+            start: "(1..=N).flat_map(|i| [0.5 * i as f64, 0.0]).collect::<Vec<f64>>()".to_owned(),
+            bodies: Some(masses),
+        }
     }
 
     /// The source of a crate.
@@ -101,19 +132,23 @@ impl Scene {
             Content::Bare => String::new(),
             _ => format!("#[derive(Clone, Copy, MechanicalSystem)]\n#[evi({})]\n", self.items),
         };
+        let constant = self.bodies.map_or(String::new(), |bodies| format!("const N: usize = {bodies};\n\n"));
         let (first, ..) = self.fields[0];
         let main = match content {
             Content::Bare => format!("println!(\"{{}}\", scene.{first});"),
-            Content::Derive => format!("println!(\"{{}} {{}}\", scene.{first}, Scene::COORDINATES.len());"),
+            Content::Derive => format!("println!(\"{{}}\", scene.{first});"),
             Content::Run | Content::Comparison => {
                 let comparison = if content == Content::Run { "" } else { COMPARISON };
                 let (n, start) = (self.n_coordinates, &self.start);
-                format!("let (q, v) = ([{start}], [0.0; {n}]);\n{RUN}\n{comparison}")
+                match self.bodies {
+                    None => format!("let (q, v) = ({start}, [0.0; {n}]);\n{RUN}\n{comparison}"),
+                    Some(_) => format!("let (q, v) = ({start}, vec![0.0; {n}]);\n{RUN_IN_LOOPS}"),
+                }
             }
         };
         // Without a run, fields and the prelude are unused: these crates are built, not kept.
         format!(
-            "#![allow(unused)]\nuse evi_core::prelude::*;\n\n{attribute}struct Scene {{ {declared} }}\n\n\
+            "#![allow(unused)]\nuse evi_core::prelude::*;\n\n{constant}{attribute}struct Scene {{ {declared} }}\n\n\
              fn main() {{\nlet scene = Scene {{ {values} }};\n{main}\n}}\n"
         )
     }
@@ -124,6 +159,23 @@ const RUN: &str = r#"
     let statements = Scene::REPORT.kernels.iter().map(|kernel| kernel.statements).max();
     println!("{}", statements.unwrap_or(0));
     let mut run = Simulation::new(scene, Evi::midpoint(0.01)).start(q, v).expect("the start is consistent");
+    let state = run.advance().expect("the step is small");
+"#;
+
+/// A step of a scene in loops, from `q` with velocities `v`.
+const RUN_IN_LOOPS: &str = r#"
+    use evi_core::assembled::{AssembledSimulation, AssembledSystem, Family, FamilyVisitor};
+    struct Largest(usize);
+    impl<S> FamilyVisitor<S> for Largest {
+        fn family<F: Family<S>>(&mut self) {
+            let statements = F::Element::REPORT.kernels.iter().map(|kernel| kernel.statements).max();
+            self.0 = self.0.max(statements.unwrap_or(0));
+        }
+    }
+    let mut largest = Largest(0);
+    scene.visit_families(&mut largest);
+    println!("{}", largest.0);
+    let mut run = AssembledSimulation::new(scene, Evi::midpoint(0.01)).start(q, v).expect("the start is consistent");
     let state = run.advance().expect("the step is small");
 "#;
 

@@ -27,7 +27,7 @@ pub enum Dop853Error {
         absolute: f64,
     },
     /// The time to move to, or a number of the start, is not finite.
-    #[error("cannot go from t = {t} to t = {target}: a number is not finite")]
+    #[error("cannot go from t = {t:?} to t = {target:?}: a number is not finite")]
     NotFinite {
         /// Where the solver stands.
         t: f64,
@@ -35,7 +35,7 @@ pub enum Dop853Error {
         target: f64,
     },
     /// More steps than a comparison waits for.
-    #[error("{steps} steps end at t = {t}")]
+    #[error("{steps} steps end at t = {t:?}")]
     TooManySteps {
         /// Time reached.
         t: f64,
@@ -43,13 +43,13 @@ pub enum Dop853Error {
         steps: u32,
     },
     /// The step size has shrunk to round-off of the time.
-    #[error("the step size vanishes at t = {t}")]
+    #[error("the step size vanishes at t = {t:?}")]
     StepSizeUnderflow {
         /// Time reached.
         t: f64,
     },
     /// Mass matrix and constraints do not determine the accelerations.
-    #[error("no accelerations at t = {t}: {matrix}")]
+    #[error("no accelerations at t = {t:?}: {matrix}")]
     Singular {
         /// Time of the evaluation.
         t: f64,

@@ -32,12 +32,10 @@ pub fn heyoka<S: MechanicalSystem>(
     tolerances: &[f64],
     repetitions: u32,
 ) -> Result<Vec<HeyokaRow>, PeerError> {
-    let parameters = system.parameters();
-    let named = S::PARAMETERS.iter().zip(parameters.as_ref()).map(|(name, x)| format!("\"{name}\": {x:?}"));
     let request = format!(
-        "{{\"scene\": \"{scene}\", \"parameters\": {{{}}}, \"q\": {q:?}, \"v\": {v:?}, \"t\": {t:?}, \
+        "{{\"scene\": \"{scene}\", \"parameters\": {}, \"q\": {q:?}, \"v\": {v:?}, \"t\": {t:?}, \
          \"tolerances\": {tolerances:?}, \"repetitions\": {repetitions}}}",
-        named.collect::<Vec<_>>().join(", ")
+        named_parameters(system)
     );
     let rows = python::ask("heyoka", "heyoka_peer.py", &request, 3 + 2 * q.len())?;
     let row = |row: Vec<f64>| {
@@ -51,4 +49,11 @@ pub fn heyoka<S: MechanicalSystem>(
         }
     };
     Ok(rows.into_iter().map(row).collect())
+}
+
+/// The parameters of a scene as a JSON object.
+pub(super) fn named_parameters<S: MechanicalSystem>(system: &S) -> String {
+    let parameters = system.parameters();
+    let named = S::PARAMETERS.iter().zip(parameters.as_ref()).map(|(name, x)| format!("\"{name}\": {x:?}"));
+    format!("{{{}}}", named.collect::<Vec<_>>().join(", "))
 }

@@ -9,10 +9,12 @@
 //! and velocities are kept times `h`, so that none begins with a multiplication.
 
 mod double_pendulum;
+mod double_pendulum_lanes;
 mod spherical_pendulum;
 mod stiff_spring_pendulum;
 
 pub use double_pendulum::HandWrittenDoublePendulum;
+pub use double_pendulum_lanes::{HandWrittenLanes, advance_all};
 pub use spherical_pendulum::HandWrittenSphericalPendulum;
 pub use stiff_spring_pendulum::{ClosedFormSpringPendulum, HandWrittenSpringPendulum};
 

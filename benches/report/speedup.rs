@@ -11,6 +11,8 @@ use crate::results::{Row, Speedup};
 const PAIRS: [([&str; 2], f64); 2] =
     [(["midpoint", "midpoint_generic"], 1e-3), (["galerkin_8", "galerkin_8_generic"], 1e-9)];
 const REPETITIONS: usize = 9;
+/// For a first look.
+const FEW_REPETITIONS: usize = 2;
 /// Steps of a counted run; a second one takes twice as many.
 const COUNTED_STEPS: u64 = 40;
 
@@ -40,7 +42,7 @@ fn speedup(
         .min_by(|a, b| (a.1 / usual).ln().abs().total_cmp(&(b.1 / usual).ln().abs()))?;
     let numbers = [number(scene, specialised)?, number(scene, generic)?];
     let mut fastest = [f64::INFINITY; 2];
-    for _ in 0..REPETITIONS {
+    for _ in 0..if quick { FEW_REPETITIONS } else { REPETITIONS } {
         for (fastest, method) in fastest.iter_mut().zip(numbers) {
             let mut solver = scene.start(method, h).ok()?;
             let clock = Instant::now();

@@ -9,11 +9,12 @@ use evi_benches::program::machine::Machine;
 
 use crate::cases;
 use crate::rows::Row;
+use crate::series::Series;
 use crate::theory::Figure;
 
 const PAGE: &str = include_str!("page/page.html");
 const STYLE: &str = include_str!("page/style.css");
-const SCRIPT: &str = include_str!("page/page.js");
+const SCRIPT: &str = concat!(include_str!("page/page.js"), include_str!("page/long_runs.js"));
 
 /// A row as columns.
 #[derive(Serialize)]
@@ -79,11 +80,20 @@ impl From<&Row> for Record {
 }
 
 #[derive(Serialize)]
-struct Data {
+struct Data<'a> {
     machine: Machine,
     quick: bool,
     cases: Vec<Summary>,
     rows: Vec<Record>,
+    long_runs: Vec<LongRun<'a>>,
+}
+
+/// A run that a figure shows.
+#[derive(Serialize)]
+struct LongRun<'a> {
+    parameter: &'a str,
+    method: &'static str,
+    series: &'a Series,
 }
 
 #[derive(Serialize)]
@@ -92,11 +102,19 @@ struct Summary {
     summary: &'static str,
 }
 
+impl<'a> LongRun<'a> {
+    fn of(row: &'a Row) -> Option<Self> {
+        let Row { parameter, method, finding, .. } = row;
+        finding.series.as_ref().map(|series| Self { parameter, method, series })
+    }
+}
+
 /// Writes both files into the folder `out`; each is replaced as a whole.
 pub(crate) fn write(rows: &[Row], quick: bool, out: &Path) -> Result<Vec<PathBuf>, WriteError> {
     let cases = cases::ALL.iter().map(|case| Summary { name: case.name, summary: case.summary }).collect();
     let records = || rows.iter().map(Record::from);
-    let data = Data { machine: Machine::present(), quick, cases, rows: records().collect() };
+    let long_runs = rows.iter().filter_map(LongRun::of).collect();
+    let data = Data { machine: Machine::present(), quick, cases, rows: records().collect(), long_runs };
     let json = serde_json::to_string(&data).expect("numbers and strings");
     [("stability.csv", csv(records())), ("stability.html", page(PAGE, STYLE, SCRIPT, &json))]
         .into_iter()

@@ -17,6 +17,7 @@ mod methods;
 mod observation;
 mod rows;
 mod scenes;
+mod series;
 mod specimen;
 mod table;
 mod tangent;

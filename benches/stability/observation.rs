@@ -169,6 +169,11 @@ impl Observation {
         }
     }
 
+    /// Whether the clock ended it.
+    pub(crate) const fn is_out_of_time(&self) -> bool {
+        matches!(self.ending, Ending::OutOfTime { .. })
+    }
+
     /// Largest value of a quantity.
     pub(crate) fn largest(&self, quantity: impl Fn(&Sample) -> f64) -> Option<f64> {
         self.samples.iter().map(quantity).map(f64::abs).filter(|value| value.is_finite()).reduce(f64::max)

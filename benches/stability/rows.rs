@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use crate::check::Check;
 use crate::observation::{Course, Ending, Observation, observe};
+use crate::series::Series;
 use crate::specimen::Specimen;
 use crate::theory::{Figure, Theory};
 use crate::verdict::{self, Verdict};
@@ -66,6 +67,9 @@ pub(crate) struct Finding {
     pub(crate) check: Check,
     pub(crate) theory: Option<Theory>,
     pub(crate) figures: Vec<Figure>,
+    /// The run from its start to its end, where a figure shows it.
+    #[serde(skip)]
+    pub(crate) series: Option<Series>,
     /// What ended the run before its last step, if not its verdict.
     pub(crate) remark: Option<String>,
     /// What must not be: failed checks, other verdicts or numbers than theory admits, panics.
@@ -105,6 +109,7 @@ impl Finding {
             check,
             theory,
             figures,
+            series: None,
             remark,
             faults,
         }
@@ -138,6 +143,7 @@ pub(crate) struct Trial {
     course: Course,
     says: Says,
     measures: Measures,
+    is_drawn: bool,
 }
 
 impl Trial {
@@ -154,6 +160,7 @@ impl Trial {
             course,
             says: Box::new(|_| None),
             measures: Arc::new(|_, _| Vec::new()),
+            is_drawn: false,
         }
     }
 
@@ -168,9 +175,14 @@ impl Trial {
         Self { measures: Arc::new(measures), ..self }
     }
 
+    /// A figure shows the runs from their start to their end.
+    pub(crate) fn drawn(self) -> Self {
+        Self { is_drawn: true, ..self }
+    }
+
     /// A row for each method.
     pub(crate) fn rows(self) -> Vec<Planned> {
-        let Self { case, parameter, specimen, course, says, measures } = self;
+        let Self { case, parameter, specimen, course, says, measures, is_drawn } = self;
         let plan = |facts: evi_benches::comparison::methods::MethodFacts| {
             let (method, specimen, measures) = (facts.name, Arc::clone(&specimen), Arc::clone(&measures));
             let theory = says(method);
@@ -178,7 +190,8 @@ impl Trial {
                 let observation = observe(&*specimen, method, course);
                 let figures =
                     if observation.samples.is_empty() { Vec::new() } else { measures(method, &observation) };
-                Finding::of(&observation, course.h, theory, figures)
+                let series = is_drawn.then(|| Series::of(&observation));
+                Finding { series, ..Finding::of(&observation, course.h, theory, figures) }
             };
             Planned { case, parameter: parameter.clone(), method, work: Box::new(work) }
         };

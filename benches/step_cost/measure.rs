@@ -18,7 +18,7 @@ pub(crate) struct Effort {
 
 impl Effort {
     pub(crate) const FULL: Self = Self { timed_steps: 20_000, repetitions: 25, counted_steps: 2_000 };
-    pub(crate) const QUICK: Self = Self { timed_steps: 2_000, repetitions: 7, counted_steps: 500 };
+    pub(crate) const QUICK: Self = Self { timed_steps: 500, repetitions: 5, counted_steps: 50 };
 }
 
 /// What a step of a path costs.

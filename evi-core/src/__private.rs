@@ -1,5 +1,7 @@
 //! What emitted code names. Not part of the public API.
 
+#[cfg(feature = "std")]
+pub use crate::assembled::{AssembledSystem, Family, FamilyVisitor};
 pub use crate::generic::GenericSystem;
 pub use crate::linear::{DenseLu, Elimination, Guarded, Inverse0, Inverse1, Inverse2, reciprocal_pivot};
 pub use crate::scalar::Scalar;

@@ -32,17 +32,22 @@
 //!
 //! [`mod@array`], [`scalar`], [`memory`], [`system`] and [`scheme`] stand at the bottom; above them `newton` and [`linear`], then
 //! [`mechanics`] (energies, projections, the equations of one step), then [`integrator`] (one-step maps and runs),
-//! and beside the integrators [`baseline`], [`generic`], [`comparison`], [`report`], `sensitivity` and [`watch`]. Imports point downwards.
+//! and beside the integrators [`assembled`] for scenes of many bodies, [`baseline`], [`generic`], [`comparison`], [`report`], [`sensitivity`] and
+//! [`watch`]; [`ensemble`] moves many members at once, [`columns`] has tables and their files. Imports point downwards.
 //!
 //! # Features
 //!
 //! | feature | default | effect |
 //! |---|---|---|
 //! | `std` | yes | trajectories on the heap; comparisons; elementary functions of the platform. Without it the crate is `no_std` |
-//! | `dispatch` | yes | `Galerkin` and `Gauss` steps in the vector instructions of the machine that the program runs on |
+//! | `dispatch` | yes | `Galerkin` and `Gauss` steps, and ensembles, in the vector instructions of the machine that the program runs on |
 //! | `derive` | yes | re-exports `#[derive(MechanicalSystem)]` |
 //! | `serde` | no | [`integrator::Checkpoint`] can be serialised |
+//! | `rayon` | no | ensembles on many threads |
+//! | `parquet` | no | [`columns::Table::save`] writes Parquet |
+//! | `mpi` | no | ensembles on several processes, by the MPI of the system |
 //! | `source` | no | [`system::MechanicalSystem::SOURCE`] holds the generated code, to read |
+//! | `sparse` | no | `assembled` scenes whose bodies hold each other in large nets: elimination with pivoting by faer |
 //! | `argmin` | no | `sensitivity::Objective` is a cost function with a gradient of the crate argmin |
 //! | `generic` | no | `generic::GenericEvi` for systems of run-time size; [`scalar::Scalar`] for the dual numbers of num-dual |
 
@@ -53,9 +58,15 @@
 extern crate self as evi_core;
 
 pub mod array;
+#[cfg(feature = "std")]
+pub mod assembled;
 pub mod baseline;
 #[cfg(feature = "std")]
+pub mod columns;
+#[cfg(feature = "std")]
 pub mod comparison;
+#[cfg(feature = "std")]
+pub mod ensemble;
 pub mod generic;
 pub mod integrator;
 pub mod linear;

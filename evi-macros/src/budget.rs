@@ -11,6 +11,11 @@ use crate::schedule::{Operations, Programs};
 /// good sense, since such a system is better written as loops over its parts. rustc's time and memory grow
 /// with the statements.
 const LARGEST_KERNEL: usize = 50_000;
+/// Coordinates in arrays of literal sizes whose sums and families are written out term by term: what the straight-line eliminations and a state on
+/// the stack bear. Larger scenes stay loops over their elements.
+pub(crate) const MOST_UNROLLED_COORDINATES: usize = 96;
+/// Equations of one index of a family that is written out: more than any solver here takes in one piece.
+pub(crate) const MOST_UNROLLED_EQUATIONS: i64 = 1_000;
 /// Contributions that a message lists.
 const LISTED_CONTRIBUTIONS: usize = 5;
 
@@ -29,23 +34,23 @@ pub(crate) fn check(graph: &Graph, model: &Model, programs: &Programs, diagnosti
         .energies
         .iter()
         .map(|energy| (operations(energy.root), format!("`{}`", energy.keyword), energy.keyword.span()));
-    let constraints = model
-        .constraints
-        .iter()
-        .map(|(name, residual)| (operations(*residual), format!("constraint `{name}`"), name.span()));
+    let constraints = model.constraints.iter().map(|constraint| {
+        (operations(constraint.root), format!("constraint `{}`", constraint.name), constraint.span)
+    });
     let dissipation = model
         .forces
         .dissipation
         .iter()
         .map(|(keyword, root)| (operations(*root), "`dissipation`".to_owned(), keyword.span()));
-    let forces = model.forces.generalized.iter().map(|(_, coordinate, root)| {
-        (operations(*root), format!("the force on `{coordinate}`"), coordinate.span())
-    });
-    let forces = dissipation.chain(forces);
-    let observables = model
-        .observables
+    let forces = model
+        .forces
+        .generalized
         .iter()
-        .map(|(name, root)| (operations(*root), format!("`observe({name}: ..)`"), name.span()));
+        .map(|(_, force)| (operations(force.root), format!("the force on `{}`", force.name), force.span));
+    let forces = dissipation.chain(forces);
+    let observables = model.observables.iter().map(|observed| {
+        (operations(observed.root), format!("`observe({}: ..)`", observed.name), observed.span)
+    });
     let mut contributions: Vec<_> = match kernel {
         "constants" => energies.chain(constraints).chain(forces).chain(observables).collect(),
         "observables" => observables.collect(),

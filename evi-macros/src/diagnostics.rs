@@ -29,6 +29,11 @@ impl Diagnostics {
         self.mistakes.push(Mistake { first, last, message: message.into() });
     }
 
+    /// Number of mistakes.
+    pub(crate) fn len(&self) -> usize {
+        self.mistakes.len()
+    }
+
     pub(crate) fn is_empty(&self) -> bool {
         self.mistakes.is_empty()
     }

@@ -19,6 +19,7 @@ pub(crate) fn rate(graph: &mut Graph, root: ExprId) -> Option<ExprId> {
         Symbol::Time => Some(graph.number(1.0)),
         // An input is constant over a step.
         Symbol::Parameter(_) | Symbol::NamedConstant(_) | Symbol::Velocity(_) | Symbol::Input(_) => None,
+        Symbol::Composite(_) => unreachable!("loops and vectors are no part of what is differentiated"),
     })
 }
 

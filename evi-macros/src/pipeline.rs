@@ -14,6 +14,10 @@ pub(crate) fn expand(input: TokenStream) -> TokenStream {
         Ok(declaration) => declaration,
         Err(syntax::NotAnItem) => return emit::compile_errors(&diagnostics),
     };
+    // Scenes of many bodies are sums of small ones, which go the same way.
+    if model::expansion(&declaration) == syntax::Expansion::Looped {
+        return expand_loops(&declaration, diagnostics);
+    }
     // Items → graph: names resolved, L and φ as expressions.
     let mut graph = Graph::default();
     let model = model::resolve(&declaration, &mut graph, &mut diagnostics);
@@ -37,4 +41,26 @@ pub(crate) fn expand(input: TokenStream) -> TokenStream {
     let written = model::written(&declaration);
     // Programs → Rust.
     emit::implementation(&declaration, &model, &graph, &programs, &written)
+}
+
+/// Expands a scene whose sums and families stay loops: every element goes through the stages by itself.
+fn expand_loops(declaration: &syntax::Declaration, mut diagnostics: Diagnostics) -> TokenStream {
+    let mut graph = Graph::default();
+    let assembled = model::resolve_assembled(declaration, &mut graph, &mut diagnostics);
+    let Some(assembled) = assembled.filter(|_| diagnostics.is_empty()) else {
+        return emit::assembled_fallback(declaration, &diagnostics);
+    };
+    let mut programs = Vec::new();
+    for element in &assembled.elements {
+        let equations = mechanics::differentiate_equations(&mut graph, element);
+        let structure = structure::analyze(&graph, &equations);
+        structure.check_gradients(element, &mut diagnostics);
+        programs.push(schedule::schedule(&graph, &equations, structure));
+        budget::check(&graph, element, &programs[programs.len() - 1], &mut diagnostics);
+    }
+    graph.verify();
+    if !diagnostics.is_empty() {
+        return emit::assembled_fallback(declaration, &diagnostics);
+    }
+    emit::assembled(declaration, &assembled, &graph, &programs)
 }

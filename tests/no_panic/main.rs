@@ -10,8 +10,9 @@ use std::hint::black_box;
 use evi_core::baseline::Rattle;
 use evi_core::integrator::{Compensated, Composed, LinearisedAt, MatrixEvi, OfRank, Rescued};
 use evi_core::prelude::*;
+use evi_examples::{DoublePendulum, StiffSpringPendulum};
 use no_panic::no_panic;
-use scenes::{DoublePendulum, DrivenPendulum, SpringPendulum};
+use scenes::CarriedPendulum;
 
 /// A run that counts nothing.
 type RunOf<S, F> = Run<S, <F as Scheme<S>>::Step, ()>;
@@ -36,11 +37,11 @@ steps! {
     /// Seventeen folded stages.
     composed: DoublePendulum by Composed<Evi<1>, 17>;
     /// A kick, a drift and a kick.
-    leapfrog: SpringPendulum by Evi<2>;
+    leapfrog: StiffSpringPendulum by Evi<2>;
     /// Newton's iteration on positions.
-    general: SpringPendulum by Evi<1>;
+    general: StiffSpringPendulum by Evi<1>;
     /// The same with time, constraints, forces and an input.
-    driven: DrivenPendulum by Evi<1>;
+    driven: CarriedPendulum by Evi<1>;
     /// With lost digits kept.
     compensated: DoublePendulum by Compensated<Evi<1>>;
     /// In up to sixteen parts.
@@ -76,10 +77,10 @@ fn main() {
     take(double(), midpoint, bent, folded);
     take(double(), Evi::simpson(0.01).frequency(3.0), bent, folded_on_curves);
     take(double(), midpoint.composed(Composition::kahan_li_8()), bent, composed);
-    let spring = || SpringPendulum { m: 1.0, l: 1.0, k: 1e3, g: 9.81 };
+    let spring = || StiffSpringPendulum::with_stiffness(1e3);
     take(spring(), Evi::trapezoid(0.01), [1.0, 0.0], leapfrog);
     take(spring(), midpoint, [1.0, 0.0], general);
-    take(DrivenPendulum { m: 1.0, l: 1.0, c: 0.1, w: 2.0, g: 9.81 }, midpoint, [0.6, -0.8], driven);
+    take(CarriedPendulum { m: 1.0, l: 1.0, c: 0.1, w: 2.0, g: 9.81 }, midpoint, [0.6, -0.8], driven);
     take(double(), midpoint.compensated(), bent, compensated);
     take(double(), midpoint.rescued::<4>(), bent, rescued);
     let hanging = [0.0, -1.0, 0.0, -1.8];

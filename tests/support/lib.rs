@@ -9,6 +9,7 @@ pub mod motions;
 pub mod references;
 pub mod scenes;
 pub mod tangent;
+pub mod trusses;
 
 /// Least-squares slope of `ln error` against `ln h`: the order that a sequence of runs shows.
 ///

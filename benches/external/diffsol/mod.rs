@@ -36,7 +36,7 @@ pub enum DiffsolError {
         absolute: f64,
     },
     /// The time to move to, or a number of the start, is not finite.
-    #[error("cannot go from t = {t} to t = {target}: a number is not finite")]
+    #[error("cannot go from t = {t:?} to t = {target:?}: a number is not finite")]
     NotFinite {
         /// Where the solver stands.
         t: f64,
@@ -44,7 +44,7 @@ pub enum DiffsolError {
         target: f64,
     },
     /// Mass matrix and constraints do not determine the accelerations.
-    #[error("no accelerations at t = {t}: {matrix}")]
+    #[error("no accelerations at t = {t:?}: {matrix}")]
     Singular {
         /// Time of the evaluation.
         t: f64,
@@ -52,7 +52,7 @@ pub enum DiffsolError {
         matrix: SingularMatrix,
     },
     /// The crate gave up.
-    #[error("stopped at t = {t}: {message}")]
+    #[error("stopped at t = {t:?}: {message}")]
     Stopped {
         /// Time reached.
         t: f64,

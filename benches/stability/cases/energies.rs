@@ -31,6 +31,7 @@ pub(crate) fn rows(effort: Effort) -> Vec<Planned> {
     }
     rows.extend(regular(effort));
     rows.extend(chaotic(effort));
+    rows.extend(in_space(effort));
     rows.extend(brouwer::rows(CASE, effort));
     rows
 }
@@ -121,6 +122,7 @@ fn regular(effort: Effort) -> Vec<Planned> {
             let slope = on(seen).slope().map_or(f64::NAN, |slope| slope.per_step.abs() / slope.half_width);
             kept(method, seen, Figure::at_most("slope over its half-width", slope, 1.0))
         })
+        .drawn()
         .rows()
 }
 
@@ -134,6 +136,26 @@ fn chaotic(effort: Effort) -> Vec<Planned> {
         .measuring(|method, seen| {
             kept(method, seen, Figure::at_most("exponent of the spread", exponent(seen), 0.8))
         })
+        .drawn()
+        .rows()
+}
+
+/// A regular motion that keeps an angular momentum.
+fn in_space(effort: Effort) -> Vec<Planned> {
+    let Start { q, v } = UNIT.one_radian();
+    let exchanged = UNIT.g * (1.0 + q[2]);
+    let experiment = Experiment::new(UNIT, q, v, exchanged, for_long_runs)
+        .about([0.0, 0.0, -1.0])
+        .keeping(SphericalPendulum::MOMENTA);
+    Trial::new(CASE, "spherical pendulum, regular", experiment, long_course(effort, 0.01))
+        .saying(|method| {
+            says(method, Theory::new("regular: the slope of the energy is zero", &[Kind::Stable]))
+        })
+        .measuring(|method, seen| match bound_of(method) {
+            Bound::None => Vec::new(),
+            _ => on_the_constraints(method, seen).into(),
+        })
+        .drawn()
         .rows()
 }
 

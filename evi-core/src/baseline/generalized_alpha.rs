@@ -158,28 +158,19 @@ impl<S: MechanicalSystem> OneStep<S> for GeneralizedAlphaStep<S> {
             // To the last bit.
             past.q.as_ref() == state.q.as_ref() && past.v.as_ref() == state.v.as_ref()
         };
-        if !self.past.as_ref().is_some_and(is_of) {
-            let past = self.past_of(state, tally);
-            let singular = |matrix| StepError::Singular { t: state.t, correction: 0, matrix };
-            self.past = Some(past.map_err(singular)?);
-        }
-        let Some(past) = &self.past else { unreachable!("made above") };
-        let predicted = past.solutions.predicted().unwrap_or_else(|| past.solution.clone());
-        let end = match self.solve(state, past, predicted, tally) {
-            // A prediction overshoots where the motion turns sharply.
-            Err(StepError::NoSolution { .. }) => self.solve(state, past, past.solution.clone(), tally)?,
-            end => end?,
+        let mut past = match self.past.take() {
+            Some(past) if is_of(&past) => past,
+            other => match self.past_of(state, tally) {
+                Ok(past) => past,
+                Err(matrix) => {
+                    self.past = other;
+                    return Err(StepError::Singular { t: state.t, correction: 0, matrix });
+                }
+            },
         };
-        let End { q, v, average, solution } = end;
-        let t = state.t + self.h;
-        let p = self.mechanics().momentum_at(t, &q, &v);
-        state.replace(t, q, v, p)?;
-        if let Some(past) = &mut self.past {
-            past.solutions.remember(solution.clone());
-            (past.q, past.v) = (state.q.clone(), state.v.clone());
-            (past.average, past.solution) = (average, solution);
-        }
-        Ok(())
+        let taken = self.advance_after(&mut past, state, tally);
+        self.past = Some(past);
+        taken
     }
 }
 
@@ -192,6 +183,29 @@ struct End<S: MechanicalSystem> {
 }
 
 impl<S: MechanicalSystem> GeneralizedAlphaStep<S> {
+    /// Takes the step from a state with this past; where there is none, both stay as they were.
+    fn advance_after(
+        &self,
+        past: &mut Past<S>,
+        state: &mut State<S>,
+        tally: &mut impl Tally,
+    ) -> Result<(), StepError> {
+        let predicted = past.solutions.predicted().unwrap_or_else(|| past.solution.clone());
+        let end = match self.solve(state, past, predicted, tally) {
+            // A prediction overshoots where the motion turns sharply.
+            Err(StepError::NoSolution { .. }) => self.solve(state, past, past.solution.clone(), tally)?,
+            end => end?,
+        };
+        let End { q, v, average, solution } = end;
+        let t = state.t + self.h;
+        let p = self.mechanics().momentum_at(t, &q, &v);
+        state.replace(t, q, v, p)?;
+        past.solutions.remember(solution.clone());
+        (past.q, past.v) = (state.q.clone(), state.v.clone());
+        (past.average, past.solution) = (average, solution);
+        Ok(())
+    }
+
     /// The end of the step, by Newton's iteration from the guess `solution`.
     fn solve(
         &self,

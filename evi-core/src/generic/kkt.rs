@@ -52,11 +52,12 @@ impl Kkt {
     /// [`SingularMatrix`] when the smallest pivot is lost in the round-off of the largest.
     pub(super) fn factor(&mut self) -> Result<(), SingularMatrix> {
         self.set_scale();
-        let dimension = self.scale.len();
+        // At least 1: chunks of no length are none.
+        let dimension = self.scale.len().max(1);
         let entries = self.matrix.as_mut_slice();
-        for col in 0..dimension {
-            for row in 0..dimension {
-                entries[col * dimension + row] *= self.scale[row] * self.scale[col];
+        for (column, of_column) in entries.chunks_exact_mut(dimension).zip(&self.scale) {
+            for (entry, of_row) in column.iter_mut().zip(&self.scale) {
+                *entry *= of_row * of_column;
             }
         }
         self.factors.factor(entries)

@@ -204,6 +204,16 @@ impl<B: Symmetric, const N: usize> Symmetric for Composed<B, N> {
     }
 }
 
+impl<B: Symmetric, const N: usize> Composed<B, N> {
+    /// The scheme of every stage, with the fraction of the step at which it starts.
+    #[cfg(feature = "std")]
+    pub(crate) fn stages(&self) -> impl Iterator<Item = (B, f64)> {
+        let h = self.step_size();
+        let stage = move |fraction: f64| self.base.with_step_size(fraction * h);
+        self.composition.fractions.into_iter().map(stage).zip(self.composition.starts())
+    }
+}
+
 impl<B: Compensable, const N: usize> Compensable for Composed<B, N> {}
 
 impl<S: MechanicalSystem, B: Symmetric + Scheme<S>, const N: usize> Scheme<S> for Composed<B, N> {

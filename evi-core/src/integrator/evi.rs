@@ -103,6 +103,14 @@ impl<const K: usize> Evi<K> {
     }
 }
 
+impl<const K: usize, F> Evi<K, F> {
+    /// The rule that samples the Lagrangian.
+    #[cfg(feature = "std")]
+    pub(crate) const fn quadrature(&self) -> &Quadrature<K> {
+        &self.quadrature
+    }
+}
+
 impl Evi<2> {
     /// The member on the trapezoidal rule, `S = 2`; the impulse method with [`stiffness`](Self::stiffness).
     pub fn trapezoid(h: f64) -> Self {
@@ -130,14 +138,9 @@ impl<S: MechanicalSystem, const K: usize, F: Interpolant<S>> Scheme<S> for Evi<K
     type Step = EviStep<S, F, K>;
 
     fn prepare(&self, mechanics: Mechanics<S>) -> Result<Self::Step, SchemeError> {
-        let h = checked_step_size(self.h)?;
-        let quadrature = self.interpolant.rule(&mechanics.constants, &self.quadrature, h)?;
-        let table = self.interpolant.table(&mechanics.constants, &quadrature, h)?;
-        if !self.allows_soft_modes {
-            check_soft_coordinates::<S, K>(&self.interpolant, &mechanics.constants, &quadrature, h)?;
-        }
-        let frequencies = Array::from_fn(|i| self.interpolant.frequency(&mechanics.constants, i));
-        let action = DiscreteLagrangian::new(mechanics, table, quadrature, h);
+        let action = self.action(mechanics)?;
+        let (h, quadrature) = (action.h(), action.quadrature());
+        let frequencies = Array::from_fn(|i| self.interpolant.frequency(&action.mechanics.constants, i));
         // Where M or A is singular, the constraints are needed to determine the motion: the general step uses them.
         let folded = if FoldedStep::<S, F>::EXISTS { FoldedStep::new(&action).ok() } else { None };
         let leapfrog = if EviStep::<S, F, K>::MAY_LEAP && quadrature.is_trapezoid() {
@@ -147,8 +150,31 @@ impl<S: MechanicalSystem, const K: usize, F: Interpolant<S>> Scheme<S> for Evi<K
         };
         let legendre =
             if ConstantLegendre::<S>::EXISTS { ConstantLegendre::new(&action.mechanics).ok() } else { None };
-        let (folded, leapfrog) = (folded.map(MultiplierStep::new), leapfrog.map(MultiplierStep::new));
+        let folded = folded.map(|free| MultiplierStep::new(&action.mechanics, free));
+        let leapfrog = leapfrog.map(|free| MultiplierStep::new(&action.mechanics, free));
         Ok(EviStep { action, frequencies, folded, leapfrog, legendre, sags: Sags::none() })
+    }
+}
+
+impl<const K: usize, F> Evi<K, F> {
+    /// The discrete Lagrangian of this scheme for a scene.
+    ///
+    /// # Errors
+    /// [`SchemeError`] for a scheme that defines no step for this scene.
+    pub(crate) fn action<S: MechanicalSystem>(
+        &self,
+        mechanics: Mechanics<S>,
+    ) -> Result<DiscreteLagrangian<S, F::Table<K>, K>, SchemeError>
+    where
+        F: Interpolant<S>,
+    {
+        let h = checked_step_size(self.h)?;
+        let quadrature = self.interpolant.rule(&mechanics.constants, &self.quadrature, h)?;
+        let table = self.interpolant.table(&mechanics.constants, &quadrature, h)?;
+        if !self.allows_soft_modes {
+            check_soft_coordinates::<S, K>(&self.interpolant, &mechanics.constants, &quadrature, h)?;
+        }
+        Ok(DiscreteLagrangian::new(mechanics, table, quadrature, h))
     }
 }
 
@@ -204,7 +230,7 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> CompensableStep<S> 
 
 impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
     /// Whether two nodes on the curves of `F` can make a leapfrog step that is not folded.
-    const MAY_LEAP: bool =
+    pub(crate) const MAY_LEAP: bool =
         K == 2 && F::IS_STRAIGHT && LeapfrogStep::<S>::EXISTS && !FoldedStep::<S, F>::EXISTS;
 
     #[inline(always)]

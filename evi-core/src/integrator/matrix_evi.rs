@@ -188,7 +188,8 @@ impl<S: MechanicalSystem, const K: usize, P: QuadraticModel<S>> Scheme<S> for Ma
             let requirement = "a positive definite mass matrix";
             let step = ImpulseStep::new(&mechanics, part, &modes, self.mollifier, h)
                 .map_err(|_| SchemeError::UnsupportedStructure { scheme: SCHEME, requirement })?;
-            Form::Impulse { mechanics, step: MultiplierStep::new(step), h }
+            let step = MultiplierStep::new(&mechanics, step);
+            Form::Impulse { mechanics, step, h }
         } else {
             let action = MatrixAction::new(mechanics, part, &modes, self.mollifier, self.quadrature, h);
             Form::General(action)

@@ -49,14 +49,18 @@ pub use matrix_evi::{
     LinearisedAlong, LinearisedAt, MatrixEvi, MatrixEviStep, QuadraticModel, StepMode, Stiffness,
 };
 #[cfg(feature = "std")]
-pub(crate) use multipliers::MultiplierStep;
+pub(crate) use multipliers::{MultiplierStep, TRUSTED};
 pub use of_rank::OfRank;
 #[cfg(feature = "std")]
 pub use proposal::{LONGEST_TRIAL, Member, PASSES_OF_NEWTON, Proposal, ProposalError, propose};
 pub use rescue::{Rescued, RescuedStep, Rescues};
+#[cfg(feature = "std")]
+pub(crate) use rescue::{depends_on_length, n_parts};
 pub use run::Run;
-#[cfg(feature = "generic")]
+#[cfg(feature = "std")]
 pub(crate) use run::steps_between;
+#[cfg(feature = "std")]
+pub(crate) use simulation::consistent_start;
 pub use simulation::{ConstraintLabel, Simulation, StartError};
 #[cfg(feature = "std")]
 pub use trajectory::{Interrupted, Trajectory};
@@ -101,7 +105,7 @@ pub trait OneStep<S: MechanicalSystem>: Memory {
 pub enum StepError {
     /// Newton's iteration found no end point: the step equations may have none near the start.
     #[error(
-        "no solution of the step found from t = {t}: after {corrections} corrections the last one is \
+        "no solution of the step found from t = {t:?}: after {corrections} corrections the last one is \
          {last_correction:e} of the configuration, the residual of the constraints {constraint_residual:e}, \
          the smallest pivot ratio {smallest_pivot_ratio:e}. Try a smaller step size"
     )]
@@ -119,7 +123,7 @@ pub enum StepError {
     },
     /// The matrix of the step equations is singular: the constraints are dependent at this configuration, or the
     /// mass matrix does not determine the motion.
-    #[error("singular step equations from t = {t}, correction {correction}: {matrix}")]
+    #[error("singular step equations from t = {t:?}, correction {correction}: {matrix}")]
     Singular {
         /// Time at the start of the step.
         t: f64,
@@ -129,7 +133,7 @@ pub enum StepError {
         matrix: SingularMatrix,
     },
     /// The momentum at the end of the step could not be projected on the constraints.
-    #[error("the velocity at t = {t} cannot be projected on the constraints: {cause}")]
+    #[error("the velocity at t = {t:?} cannot be projected on the constraints: {cause}")]
     Projection {
         /// Time at the end of the step.
         t: f64,
@@ -137,7 +141,7 @@ pub enum StepError {
         cause: ProjectionError,
     },
     /// An input is not finite.
-    #[error("the input `{name}` of the step is {value}")]
+    #[error("the input `{name}` of the step is {value:?}")]
     Input {
         /// The input.
         name: &'static str,
@@ -145,7 +149,7 @@ pub enum StepError {
         value: f64,
     },
     /// The time to move to is no number of steps away: not finite, or farther than a float counts steps.
-    #[error("t = {target} cannot be reached in steps of h = {h}")]
+    #[error("t = {target:?} cannot be reached in steps of h = {h:?}")]
     UnreachableTime {
         /// The time to move to.
         target: f64,
@@ -153,7 +157,7 @@ pub enum StepError {
         h: f64,
     },
     /// The time to move to lies on the other side of where steps of this sign lead.
-    #[error("t = {target} is not ahead of t = {t} in steps of h = {h}: with h = {} it is", -.h)]
+    #[error("t = {target:?} is not ahead of t = {t:?} in steps of h = {h:?}: with h = {:?} it is", -.h)]
     OppositeTime {
         /// The time reached.
         t: f64,
@@ -165,7 +169,7 @@ pub enum StepError {
     /// At the end of the step constraints contradict each other, of which some were stated to follow from the others
     /// ([`OfRank`]).
     #[error(
-        "constraints contradict each other at t = {t}: where as many hold as are independent, constraint {constraint} has the residual \
+        "constraints contradict each other at t = {t:?}: where as many hold as are independent, constraint {constraint} has the residual \
          {residual:e}, allowed {allowed:e}"
     )]
     ContradictoryConstraints {
@@ -179,7 +183,7 @@ pub enum StepError {
         allowed: f64,
     },
     /// The end of the step is not finite.
-    #[error("the state at t = {t} is not finite")]
+    #[error("the state at t = {t:?} is not finite")]
     NotFinite {
         /// Time at the end of the step.
         t: f64,

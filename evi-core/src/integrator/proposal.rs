@@ -90,7 +90,7 @@ pub enum ProposalError {
     },
     /// The error grows faster than a regular motion's, so that a part of the horizon does not tell that of the whole.
     #[error(
-        "from half of a trial of {trial} to its end the error grows {factor:.0} times: that does not tell it at {horizon}"
+        "from half of a trial of {trial:?} to its end the error grows {factor:.1e} times: that does not tell it at {horizon:?}"
     )]
     Growth {
         /// Time of the trial.

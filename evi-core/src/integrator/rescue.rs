@@ -17,6 +17,12 @@ impl<B: Symmetric, const K: usize> Rescued<B, K> {
         const { assert!(0 < K && K < 32, "a step is halved once or more, and its parts have to be counted") };
         Self { base }
     }
+
+    /// The scheme of whole steps.
+    #[cfg(feature = "std")]
+    pub(crate) const fn base(&self) -> &B {
+        &self.base
+    }
 }
 
 impl<B: Compensable, const K: usize> Compensable for Rescued<B, K> {}
@@ -47,7 +53,7 @@ impl<S: MechanicalSystem, B: Symmetric + Scheme<S>, const K: usize> Scheme<S> fo
 }
 
 /// `2^(k + 1)`, for the map of index `k`.
-const fn n_parts(index: usize) -> u64 {
+pub(crate) const fn n_parts(index: usize) -> u64 {
     2 << index
 }
 
@@ -58,6 +64,14 @@ pub struct Rescues {
     pub steps: u64,
     /// Number of their parts, all together.
     pub parts: u64,
+}
+
+impl Rescues {
+    /// Counts a step that was taken in so many parts.
+    pub(crate) const fn count(&mut self, parts: u64) {
+        self.steps += 1;
+        self.parts += parts;
+    }
 }
 
 /// The one-step map of a [`Rescued`] scheme.
@@ -111,8 +125,7 @@ impl<M, const K: usize> RescuedStep<M, K> {
             if is_taken {
                 reached.t = start + h;
                 (*state, *carried) = (reached, kept);
-                self.rescues.steps += 1;
-                self.rescues.parts += n;
+                self.rescues.count(n);
                 tally.count_rescue(n);
                 return Ok(());
             }
@@ -122,7 +135,7 @@ impl<M, const K: usize> RescuedStep<M, K> {
 }
 
 /// Whether a shorter step can be free of this error.
-const fn depends_on_length(error: &StepError) -> bool {
+pub(crate) const fn depends_on_length(error: &StepError) -> bool {
     matches!(error, StepError::NoSolution { .. } | StepError::Singular { .. } | StepError::Projection { .. })
 }
 

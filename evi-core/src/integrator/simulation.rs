@@ -263,16 +263,9 @@ impl<S: MechanicalSystem, F: Scheme<S>> Simulation<S, F> {
         q: impl Into<S::PerCoordinate<f64>>,
         v: impl Into<S::PerCoordinate<f64>>,
     ) -> Result<Run<S, F::Step>, StartError> {
-        check_parameters(&self.system)?;
+        check_parameters::<S>(&self.system.parameters())?;
         let step = self.scheme.prepare(Mechanics::new(&self.system))?;
-        let (q, v) = (q.into(), v.into());
-        let mechanics = step.mechanics();
-        check_finite(mechanics, t, &q, &v)?;
-        check_position(mechanics, t, &q)?;
-        check_rank(mechanics, t, &q)?;
-        check_velocity(mechanics, t, step.h(), &q, &v)?;
-        let state = project_velocity(mechanics, t, q, v)?;
-        check_phase(mechanics, step.h(), &state)?;
+        let state = checked_start(step.mechanics(), step.h(), t, q.into(), v.into())?;
         Ok(Run::new(step, state))
     }
 
@@ -286,7 +279,7 @@ impl<S: MechanicalSystem, F: Scheme<S>> Simulation<S, F> {
         q: impl Into<S::PerCoordinate<f64>>,
         v: impl Into<S::PerCoordinate<f64>>,
     ) -> Result<Run<S, F::Step>, StartError> {
-        check_parameters(&self.system)?;
+        check_parameters::<S>(&self.system.parameters())?;
         let step = self.scheme.prepare(Mechanics::new(&self.system))?;
         let (q, v) = (q.into(), v.into());
         let mechanics = step.mechanics();
@@ -299,6 +292,41 @@ impl<S: MechanicalSystem, F: Scheme<S>> Simulation<S, F> {
         check_phase(mechanics, step.h(), &state)?;
         Ok(Run::new(step, state))
     }
+}
+
+/// The mechanics of a scene with these parameters, and the state at a consistent start of steps of size `h`.
+///
+/// # Errors
+/// As for [`Simulation::start`], those of the scheme aside.
+#[cfg(feature = "std")]
+pub(crate) fn consistent_start<S: MechanicalSystem>(
+    parameters: &S::PerParameter<f64>,
+    h: f64,
+    t: f64,
+    q: S::PerCoordinate<f64>,
+    v: S::PerCoordinate<f64>,
+) -> Result<(Mechanics<S>, State<S>), StartError> {
+    check_parameters::<S>(parameters)?;
+    let mechanics = Mechanics { constants: S::constants(parameters) };
+    let state = checked_start(&mechanics, h, t, q, v)?;
+    Ok((mechanics, state))
+}
+
+/// The state at a consistent start.
+fn checked_start<S: MechanicalSystem>(
+    mechanics: &Mechanics<S>,
+    h: f64,
+    t: f64,
+    q: S::PerCoordinate<f64>,
+    v: S::PerCoordinate<f64>,
+) -> Result<State<S>, StartError> {
+    check_finite(mechanics, t, &q, &v)?;
+    check_position(mechanics, t, &q)?;
+    check_rank(mechanics, t, &q)?;
+    check_velocity(mechanics, t, h, &q, &v)?;
+    let state = project_velocity(mechanics, t, q, v)?;
+    check_phase(mechanics, h, &state)?;
+    Ok(state)
 }
 
 /// Removes what round-off left of the velocity normal to the constraints, and finds the momentum.
@@ -319,8 +347,8 @@ fn project_velocity<S: MechanicalSystem>(
     Ok(State { t, q, v: projected.v, p: projected.p, inputs: Array::from_fn(|_| 0.0) })
 }
 
-fn check_parameters<S: MechanicalSystem>(system: &S) -> Result<(), StartError> {
-    for (name, &value) in S::PARAMETERS.iter().zip(system.parameters().as_ref()) {
+fn check_parameters<S: MechanicalSystem>(parameters: &S::PerParameter<f64>) -> Result<(), StartError> {
+    for (name, &value) in S::PARAMETERS.iter().zip(parameters.as_ref()) {
         if !value.is_finite() {
             return Err(StartError::Parameter { name, value });
         }

@@ -2,8 +2,8 @@
 
 use super::{Factorization, SingularMatrix};
 
-/// A determinant below this fraction of its two terms is their round-off.
-const SMALLEST_DETERMINANT: f64 = 4.0 * f64::EPSILON;
+/// A determinant below this fraction of one of its two terms is their round-off: the two are then the same but for that.
+const SMALLEST_DETERMINANT: f64 = 8.0 * f64::EPSILON;
 
 /// The empty matrix.
 pub struct Inverse0;
@@ -64,20 +64,19 @@ impl Factorization<[f64; 1], [[f64; 1]; 1]> for Inverse1 {
 pub struct Inverse2 {
     matrix: [[f64; 2]; 2],
     reciprocal_determinant: f64,
-    /// Sum of the magnitudes of the determinant's terms.
-    magnitude: f64,
 }
 
 impl Factorization<[f64; 2], [[f64; 2]; 2]> for Inverse2 {
     #[inline]
     fn factor(&matrix: &[[f64; 2]; 2]) -> Result<Self, SingularMatrix> {
         let [[a, b], [c, d]] = matrix;
-        let (main, other) = (a * d, b * c);
-        let (determinant, magnitude) = (main - other, main.abs() + other.abs());
-        if determinant.abs() > SMALLEST_DETERMINANT * magnitude {
-            Ok(Self { matrix, reciprocal_determinant: 1.0 / determinant, magnitude })
+        let main = a * d;
+        let determinant = main - b * c;
+        if determinant.abs() > SMALLEST_DETERMINANT * main.abs() {
+            Ok(Self { matrix, reciprocal_determinant: 1.0 / determinant })
         } else {
             // 0 for the zero matrix, NaN where an entry is.
+            let magnitude = magnitude_of_terms(&matrix);
             Err(SingularMatrix {
                 pivot_ratio: if magnitude == 0.0 { 0.0 } else { determinant.abs() / magnitude },
             })
@@ -104,6 +103,11 @@ impl Factorization<[f64; 2], [[f64; 2]; 2]> for Inverse2 {
 
     #[inline]
     fn pivot_ratio(&self) -> f64 {
-        1.0 / (self.reciprocal_determinant.abs() * self.magnitude)
+        1.0 / (self.reciprocal_determinant.abs() * magnitude_of_terms(&self.matrix))
     }
+}
+
+/// Sum of the magnitudes of the determinant's terms.
+fn magnitude_of_terms([[a, b], [c, d]]: &[[f64; 2]; 2]) -> f64 {
+    (a * d).abs() + (b * c).abs()
 }

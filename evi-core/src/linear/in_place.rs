@@ -16,7 +16,7 @@ pub(crate) struct InPlaceLu {
     swaps: Vec<usize>,
     /// `1/Uₖₖ`: one division per column.
     inverse_pivots: Vec<f64>,
-    /// Behind the last nonzero of every column of `L`.
+    /// Behind the last nonzero of every column of `L`; behind its last row where no band is looked for.
     column_ends: Vec<usize>,
     /// Behind the last nonzero of every row that is left.
     row_ends: Vec<usize>,
@@ -29,7 +29,7 @@ impl InPlaceLu {
         Self {
             swaps: vec![0; dimension],
             inverse_pivots: vec![1.0; dimension],
-            column_ends: vec![0; dimension],
+            column_ends: vec![dimension; dimension],
             row_ends: vec![0; dimension],
             pivot_ratio: 1.0,
         }
@@ -41,51 +41,72 @@ impl InPlaceLu {
     /// [`SingularMatrix`] when the smallest pivot is lost in the round-off of the largest.
     pub(crate) fn factor(&mut self, entries: &mut [f64]) -> Result<(), SingularMatrix> {
         let dimension = self.swaps.len();
-        let is_banded = dimension >= SMALLEST_BAND;
-        if is_banded {
-            self.find_row_ends(entries)?;
+        if dimension < SMALLEST_BAND {
+            self.eliminate(entries);
         } else {
-            self.row_ends.fill(dimension);
-        }
-        for k in 0..dimension {
-            let column = &entries[k * dimension..(k + 1) * dimension];
-            let last =
-                if is_banded { column.iter().rposition(|&entry| entry != 0.0) } else { Some(dimension - 1) };
-            let end = last.map_or(k + 1, |row| (row + 1).max(k + 1));
-            let (pivot_row, pivot) = largest_entry(&column[..end], k);
-            self.swaps[k] = pivot_row;
-            self.column_ends[k] = end;
-            // Exact zero: nothing is left to eliminate in this column; the check of the pivots reports it.
-            if pivot == 0.0 {
-                continue;
-            }
-            let row_end = self.row_ends[k..end].iter().fold(k + 1, |end, &other| end.max(other));
-            if pivot_row != k {
-                for col in k..row_end {
-                    entries.swap(col * dimension + k, col * dimension + pivot_row);
-                }
-            }
-            self.row_ends[k..end].fill(row_end);
-            let inverse_pivot = 1.0 / pivot;
-            self.inverse_pivots[k] = inverse_pivot;
-            let (head, tail) = entries.split_at_mut((k + 1) * dimension);
-            let multipliers = &mut head[k * dimension + k + 1..k * dimension + end];
-            for multiplier in multipliers.iter_mut() {
-                *multiplier *= inverse_pivot;
-            }
-            for column in tail.chunks_exact_mut(dimension).take(row_end - (k + 1)) {
-                let top = column[k];
-                // Where the matrix has blocks of zeros, half of the columns.
-                if top == 0.0 {
-                    continue;
-                }
-                for (entry, multiplier) in column[k + 1..end].iter_mut().zip(multipliers.iter()) {
-                    *entry -= multiplier * top;
-                }
-            }
+            self.find_row_ends(entries)?;
+            self.eliminate_within_band(entries);
         }
         self.pivot_ratio = checked_pivot_ratio(dimension, |i| entries[i * dimension + i])?;
         Ok(())
+    }
+
+    /// Eliminates every column.
+    fn eliminate(&mut self, entries: &mut [f64]) {
+        let dimension = self.swaps.len();
+        for k in 0..dimension {
+            let (pivot_row, pivot) = largest_entry(&entries[k * dimension..(k + 1) * dimension], k);
+            self.swaps[k] = pivot_row;
+            // Exact zero: nothing is left to eliminate in this column; the check of the pivots reports it.
+            if pivot != 0.0 {
+                self.inverse_pivots[k] = 1.0 / pivot;
+                self.eliminate_column(entries, k, dimension, dimension);
+            }
+        }
+    }
+
+    /// Eliminates every column as far as it and the rows in it reach.
+    fn eliminate_within_band(&mut self, entries: &mut [f64]) {
+        let dimension = self.swaps.len();
+        for k in 0..dimension {
+            let column = &entries[k * dimension..(k + 1) * dimension];
+            let end =
+                column.iter().rposition(|&entry| entry != 0.0).map_or(k + 1, |row| (row + 1).max(k + 1));
+            let (pivot_row, pivot) = largest_entry(&column[..end], k);
+            self.swaps[k] = pivot_row;
+            self.column_ends[k] = end;
+            // As above.
+            if pivot != 0.0 {
+                self.inverse_pivots[k] = 1.0 / pivot;
+                let row_end = self.row_ends[k..end].iter().fold(k + 1, |end, &other| end.max(other));
+                self.row_ends[k..end].fill(row_end);
+                self.eliminate_column(entries, k, end, row_end);
+            }
+        }
+    }
+
+    /// Brings the pivot of column `k` up and eliminates what is below it, up to row `end`, from the columns up to `row_end`.
+    fn eliminate_column(&self, entries: &mut [f64], k: usize, end: usize, row_end: usize) {
+        let (dimension, pivot_row, inverse_pivot) = (self.swaps.len(), self.swaps[k], self.inverse_pivots[k]);
+        let (head, tail) = entries.split_at_mut((k + 1) * dimension);
+        let pivots = &mut head[k * dimension..][..end];
+        pivots.swap(k, pivot_row);
+        let multipliers = &mut pivots[k + 1..];
+        for multiplier in multipliers.iter_mut() {
+            *multiplier *= inverse_pivot;
+        }
+        for column in tail.chunks_exact_mut(dimension).take(row_end - (k + 1)) {
+            let column = &mut column[..end];
+            column.swap(k, pivot_row);
+            let top = column[k];
+            // Where the matrix has blocks of zeros, half of the columns.
+            if top == 0.0 {
+                continue;
+            }
+            for (entry, multiplier) in column[k + 1..].iter_mut().zip(multipliers.iter()) {
+                *entry -= multiplier * top;
+            }
+        }
     }
 
     /// Overwrites `row_ends`, or refuses a matrix with an entry that is not finite: beside a band not every one reaches a pivot.
@@ -149,11 +170,11 @@ impl InPlaceLu {
 /// Row and value of the largest entry of a column from row `first` on; a NaN counts as the largest, so that it reaches
 /// the pivots.
 fn largest_entry(column: &[f64], first: usize) -> (usize, f64) {
-    let mut largest = first;
-    for row in first + 1..column.len() {
-        let is_smaller = column[row].abs() <= column[largest].abs();
-        if !is_smaller && !column[largest].is_nan() {
-            largest = row;
+    let (mut largest, mut magnitude) = (first, column[first].abs());
+    for (row, entry) in column.iter().enumerate().skip(first + 1) {
+        let is_smaller = entry.abs() <= magnitude;
+        if !is_smaller && !magnitude.is_nan() {
+            (largest, magnitude) = (row, entry.abs());
         }
     }
     (largest, column[largest])

@@ -3,7 +3,7 @@
 use super::{CoordinateMatrix, Coupling, Mechanics};
 use crate::array::Array;
 use crate::scalar::Scalar;
-use crate::system::MechanicalSystem;
+use crate::system::{Entry, MechanicalSystem};
 
 /// `B Gᵀ` for a symmetric matrix `B` over the coordinates, a row per constraint.
 pub(crate) type Directions<S> =
@@ -126,6 +126,18 @@ impl<S: MechanicalSystem> Mechanics<S> {
             reach[entry.row] += entry.value(self.constants.as_ref(), jacobian.as_ref()) * q[entry.col];
         }
         reach
+    }
+
+    /// `|G q|` at every configuration on the constraints, where they are quadratic forms but for a constant,
+    /// `φ = ½ qᵀ φ_qq q + φ(0)`: `2 |φ(0)|`.
+    pub(crate) fn constant_reach(&self) -> Option<S::PerConstraint<f64>> {
+        let origin = Array::from_fn(|_| 0.0);
+        let (at_origin, jacobian) = S::constraint_derivatives(&self.constants, 0.0, &origin);
+        let is_form = |entry: &Entry| entry.value(self.constants.as_ref(), jacobian.as_ref()) == 0.0;
+        // Exactly zero, as the slopes of a form are at the origin.
+        let are_forms =
+            S::STRUCTURE.has_quadratic_constraints() && S::STRUCTURE.jacobian.q.iter().all(is_form);
+        are_forms.then(|| Array::from_fn(|c| 2.0 * at_origin[c].abs()))
     }
 
     /// `‖G_c‖`, the Euclidean norm of every constraint's gradient.

@@ -22,7 +22,9 @@ impl<S: MechanicalSystem> CoordinateMatrix<S> {
     pub(crate) fn zero_rows() -> Rows<S> {
         Array::from_fn(|_| Array::from_fn(|_| 0.0))
     }
+}
 
+impl<S: MechanicalSystem, C: Coupling<S>> CoordinateMatrix<S, C> {
     /// The inverse of a matrix, symmetric to the last bit.
     ///
     /// # Errors
@@ -43,9 +45,7 @@ impl<S: MechanicalSystem> CoordinateMatrix<S> {
     pub(crate) fn scaled(&self, factor: f64) -> Self {
         Self::new(Array::from_fn(|row| Array::from_fn(|col| factor * self.rows[row][col])))
     }
-}
 
-impl<S: MechanicalSystem, C: Coupling<S>> CoordinateMatrix<S, C> {
     pub(crate) fn new(rows: Rows<S>) -> Self {
         Self { diagonal: Array::from_fn(|i| rows[i][i]), rows, coupling: PhantomData }
     }

@@ -1,7 +1,7 @@
-//! Which coordinates a constant matrix couples: those of the scene, or all.
+//! Which coordinates a constant matrix couples: those of the scene, those of its mass matrix, or all.
 
 use crate::linear::{Factorization, Pivoted};
-use crate::system::MechanicalSystem;
+use crate::system::{MassShape, MechanicalSystem};
 
 /// The pattern of a matrix `D` over the coordinates, and what solves with `G D Gᵀ`.
 pub(crate) trait Coupling<S: MechanicalSystem> {
@@ -17,6 +17,15 @@ pub(crate) struct AsScene;
 
 impl<S: MechanicalSystem> Coupling<S> for AsScene {
     const IS_DIAGONAL: bool = S::STRUCTURE.is_uncoupled();
+
+    type GramFactors = S::GramFactors;
+}
+
+/// Couples what the mass matrix couples.
+pub(crate) struct AsMass;
+
+impl<S: MechanicalSystem> Coupling<S> for AsMass {
+    const IS_DIAGONAL: bool = matches!(S::STRUCTURE.mass_shape, MassShape::Diagonal);
 
     type GramFactors = S::GramFactors;
 }

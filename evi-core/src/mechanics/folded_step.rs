@@ -93,29 +93,40 @@ impl<S: MechanicalSystem, F: Interpolant<S>> FoldedStep<S, F> {
     }
 }
 
+#[cfg(feature = "std")]
+impl<S: MechanicalSystem, F> FoldedStep<S, F> {
+    /// `−B` and `−a`.
+    pub(crate) const fn start_kick(&self) -> (&CoordinateMatrix<S>, &S::PerCoordinate<f64>) {
+        (&self.start_kick.linear, &self.start_kick.constant)
+    }
+
+    /// `E` and `c`.
+    pub(crate) const fn end_kick(&self) -> (&CoordinateMatrix<S>, &S::PerCoordinate<f64>) {
+        (&self.end_kick.linear, &self.end_kick.constant)
+    }
+}
+
 impl<S: MechanicalSystem, F: Interpolant<S>> KickDriftKick<S> for FoldedStep<S, F> {
     type Coupling = AsScene;
 
     #[inline]
-    fn kicked_at_start(
+    fn start_kick(
         &self,
         _mechanics: &Mechanics<S>,
         _t: f64,
         q: &S::PerCoordinate<f64>,
-        p: &S::PerCoordinate<f64>,
     ) -> S::PerCoordinate<f64> {
-        self.start_kick.apply(F::IS_STRAIGHT, q, p)
+        self.start_kick.apply(F::IS_STRAIGHT, q)
     }
 
     #[inline]
-    fn kicked_at_end(
+    fn end_kick(
         &self,
         _mechanics: &Mechanics<S>,
         _t: f64,
         q: &S::PerCoordinate<f64>,
-        p: &S::PerCoordinate<f64>,
     ) -> S::PerCoordinate<f64> {
-        self.end_kick.apply(F::IS_STRAIGHT, q, p)
+        self.end_kick.apply(F::IS_STRAIGHT, q)
     }
 
     #[cfg(feature = "std")]
@@ -164,18 +175,13 @@ impl<S: MechanicalSystem> Kick<S> {
         self.linear.times(|i| x[i])
     }
 
-    /// `p` after the kick at `q`, which does not depend on `q` where curves are straight and `L` is at most linear in `q`.
-    #[inline]
-    fn apply(
-        &self,
-        is_straight: bool,
-        q: &S::PerCoordinate<f64>,
-        p: &S::PerCoordinate<f64>,
-    ) -> S::PerCoordinate<f64> {
+    /// The kick at `q`, which does not depend on `q` where curves are straight and `L` is at most linear in `q`.
+    #[inline(always)]
+    fn apply(&self, is_straight: bool, q: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
         if is_straight && S::STRUCTURE.hessian.qq.is_empty() {
-            return Array::from_fn(|i| p[i] + self.constant[i]);
+            return self.constant.clone();
         }
         let linear = self.linear.times(|i| q[i]);
-        Array::from_fn(|i| p[i] + (linear[i] + self.constant[i]))
+        Array::from_fn(|i| linear[i] + self.constant[i])
     }
 }

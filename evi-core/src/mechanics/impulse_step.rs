@@ -70,15 +70,9 @@ impl<S: MechanicalSystem> ImpulseStep<S> {
         }
     }
 
-    /// `p + T (q − q_ref) − ½h ∂/∂q U(t, φ(hW) q)`.
+    /// `T (q − q_ref) − ½h ∂/∂q U(t, φ(hW) q)`.
     #[inline]
-    fn kicked(
-        &self,
-        mechanics: &Mechanics<S>,
-        t: f64,
-        q: &S::PerCoordinate<f64>,
-        p: &S::PerCoordinate<f64>,
-    ) -> S::PerCoordinate<f64> {
+    fn kick_at(&self, mechanics: &Mechanics<S>, t: f64, q: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
         let QuadraticPart { reference, multipliers, .. } = &self.part;
         let displacement = self.part.displacement(q);
         let linear = times::<S>(&self.kick, &displacement);
@@ -93,7 +87,7 @@ impl<S: MechanicalSystem> ImpulseStep<S> {
                 gradient
             }
         };
-        Array::from_fn(|i| p[i] + (linear[i] - self.half_h * gradient[i]))
+        Array::from_fn(|i| linear[i] - self.half_h * gradient[i])
     }
 }
 
@@ -128,27 +122,18 @@ impl<S: MechanicalSystem> KickDriftKick<S> for ImpulseStep<S> {
     type Coupling = Full;
 
     #[inline]
-    fn kicked_at_start(
+    fn start_kick(
         &self,
         mechanics: &Mechanics<S>,
         t: f64,
         q: &S::PerCoordinate<f64>,
-        p: &S::PerCoordinate<f64>,
     ) -> S::PerCoordinate<f64> {
-        let p = self.kicked(mechanics, t, q, p);
-        self.legendre.moving(&p)
+        self.legendre.moving(&self.kick_at(mechanics, t, q))
     }
 
     #[inline]
-    fn kicked_at_end(
-        &self,
-        mechanics: &Mechanics<S>,
-        t: f64,
-        q: &S::PerCoordinate<f64>,
-        p: &S::PerCoordinate<f64>,
-    ) -> S::PerCoordinate<f64> {
-        let p = self.kicked(mechanics, t, q, p);
-        self.legendre.canonical(&p)
+    fn end_kick(&self, mechanics: &Mechanics<S>, t: f64, q: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
+        self.legendre.canonical(&self.kick_at(mechanics, t, q))
     }
 
     #[cfg(feature = "std")]

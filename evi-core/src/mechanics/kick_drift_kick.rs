@@ -15,23 +15,16 @@ pub(crate) trait KickDriftKick<S: MechanicalSystem> {
     /// What `D` couples.
     type Coupling: Coupling<S>;
 
-    /// `p½` without constraint forces.
-    fn kicked_at_start(
+    /// `k₀(t₀, q₀)`.
+    fn start_kick(
         &self,
         mechanics: &Mechanics<S>,
         t: f64,
         q: &S::PerCoordinate<f64>,
-        p: &S::PerCoordinate<f64>,
     ) -> S::PerCoordinate<f64>;
 
-    /// `p⁻` from `p½`.
-    fn kicked_at_end(
-        &self,
-        mechanics: &Mechanics<S>,
-        t: f64,
-        q: &S::PerCoordinate<f64>,
-        p: &S::PerCoordinate<f64>,
-    ) -> S::PerCoordinate<f64>;
+    /// `k₁(t₁, q₁)`.
+    fn end_kick(&self, mechanics: &Mechanics<S>, t: f64, q: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64>;
 
     /// `∂k₀/∂q x` at the start of a step: the product of a symmetric matrix.
     #[cfg(feature = "std")]

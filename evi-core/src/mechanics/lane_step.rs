@@ -12,8 +12,7 @@
 //! is ever formed. A fixed point solves the equations of [`super::galerkin_equations`] exactly, whatever `Sᵢ` is and wherever the first pass begins;
 //! a pass shrinks the error by about `4 (h ω)² ρ(B)`.
 
-use super::coupling::{AsScene, Coupling};
-use super::{ConstantLegendre, CoordinateMatrix, ForcePoint, Mechanics, State};
+use super::{AsMass, AsScene, ConstantLegendre, CoordinateMatrix, Coupling, ForcePoint, Mechanics, State};
 use crate::array::Array;
 use crate::linear::{Cholesky, LaneGram};
 use crate::newton::{NotConverged, Progress};
@@ -56,15 +55,6 @@ pub(crate) struct LaneEnd<S: MechanicalSystem> {
     pub(crate) difference: S::PerCoordinate<f64>,
     /// Passes taken.
     pub(crate) passes: usize,
-}
-
-/// Couples what the mass matrix couples.
-struct AsMass;
-
-impl<S: MechanicalSystem> Coupling<S> for AsMass {
-    const IS_DIAGONAL: bool = matches!(S::STRUCTURE.mass_shape, crate::system::MassShape::Diagonal);
-
-    type GramFactors = S::GramFactors;
 }
 
 /// Passes until they have converged, as an operation on lanes.
@@ -400,7 +390,7 @@ pub(super) fn nothing<A: Array<Lanes>>() -> A {
 
 /// The product of a table of `K` columns with a vector, added to `start`: two sums that do not wait for each other.
 #[inline(always)]
-pub(super) fn product<const K: usize, const FUSED: bool>(columns: &Columns, x: Lanes, start: Lanes) -> Lanes {
+pub(crate) fn product<const K: usize, const FUSED: bool>(columns: &Columns, x: Lanes, start: Lanes) -> Lanes {
     const SUMS: usize = 2;
     let x = x.to_array();
     let mut sums = [start, Lanes::ZERO];
@@ -477,7 +467,7 @@ fn add_gram<S: MechanicalSystem, const FUSED: bool>(
 /// The length whose round-off the points of a step are found to: that of the configuration, less in steps that are short beside it, since what
 /// points are off by, velocities are off by the `h`-th part of.
 #[inline(always)]
-pub(super) fn reach(here: f64, way: f64) -> f64 {
+pub(crate) fn reach(here: f64, way: f64) -> f64 {
     /// A step of an eighth of the configuration is not short.
     const LONG: f64 = 8.0;
     /// Points are sums of a configuration: closer is not to be had.

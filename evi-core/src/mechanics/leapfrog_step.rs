@@ -7,7 +7,7 @@
 //!
 //! (the method of Störmer and Verlet; with constraints RATTLE, Andersen, J. Comput. Phys. 52 (1983) 24).
 
-use super::{AsScene, ConstantLegendre, CoordinateMatrix, KickDriftKick, Mechanics};
+use super::{AsMass, ConstantLegendre, CoordinateMatrix, KickDriftKick, Mechanics};
 use crate::array::Array;
 use crate::linear::SingularMatrix;
 use crate::system::MechanicalSystem;
@@ -16,7 +16,7 @@ use crate::system::MechanicalSystem;
 pub(crate) struct LeapfrogStep<S: MechanicalSystem> {
     half_h: f64,
     /// `h M⁻¹`.
-    drift: CoordinateMatrix<S>,
+    drift: CoordinateMatrix<S, AsMass>,
     legendre: ConstantLegendre<S>,
 }
 
@@ -31,18 +31,18 @@ impl<S: MechanicalSystem> LeapfrogStep<S> {
         Ok(Self { half_h: 0.5 * h, drift, legendre: ConstantLegendre::new(mechanics)? })
     }
 
-    /// `p + ½h ∂L/∂q`, which does not depend on the velocity.
+    /// `½h`.
+    #[cfg(feature = "std")]
+    pub(crate) const fn half_h(&self) -> f64 {
+        self.half_h
+    }
+
+    /// `½h ∂L/∂q`, which does not depend on the velocity.
     #[inline(always)]
-    fn kicked(
-        &self,
-        mechanics: &Mechanics<S>,
-        t: f64,
-        q: &S::PerCoordinate<f64>,
-        p: &S::PerCoordinate<f64>,
-    ) -> S::PerCoordinate<f64> {
+    fn kick_at(&self, mechanics: &Mechanics<S>, t: f64, q: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
         let at_rest = Array::from_fn(|_| 0.0);
         let force = S::lagrangian_gradient(&mechanics.constants, t, q, &at_rest).force;
-        Array::from_fn(|i| p[i] + self.half_h * force[i])
+        Array::from_fn(|i| self.half_h * force[i])
     }
 }
 
@@ -71,30 +71,21 @@ impl<S: MechanicalSystem> LeapfrogStep<S> {
 }
 
 impl<S: MechanicalSystem> KickDriftKick<S> for LeapfrogStep<S> {
-    type Coupling = AsScene;
+    type Coupling = AsMass;
 
     #[inline(always)]
-    fn kicked_at_start(
+    fn start_kick(
         &self,
         mechanics: &Mechanics<S>,
         t: f64,
         q: &S::PerCoordinate<f64>,
-        p: &S::PerCoordinate<f64>,
     ) -> S::PerCoordinate<f64> {
-        let p = self.kicked(mechanics, t, q, p);
-        self.legendre.moving(&p)
+        self.legendre.moving(&self.kick_at(mechanics, t, q))
     }
 
     #[inline(always)]
-    fn kicked_at_end(
-        &self,
-        mechanics: &Mechanics<S>,
-        t: f64,
-        q: &S::PerCoordinate<f64>,
-        p: &S::PerCoordinate<f64>,
-    ) -> S::PerCoordinate<f64> {
-        let p = self.kicked(mechanics, t, q, p);
-        self.legendre.canonical(&p)
+    fn end_kick(&self, mechanics: &Mechanics<S>, t: f64, q: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
+        self.legendre.canonical(&self.kick_at(mechanics, t, q))
     }
 
     #[cfg(feature = "std")]
@@ -122,7 +113,7 @@ impl<S: MechanicalSystem> KickDriftKick<S> for LeapfrogStep<S> {
     }
 
     #[inline(always)]
-    fn drift(&self) -> &CoordinateMatrix<S> {
+    fn drift(&self) -> &CoordinateMatrix<S, AsMass> {
         &self.drift
     }
 

@@ -3,7 +3,7 @@
 use core::borrow::Borrow;
 
 use super::constraints::Gram;
-use super::{AsScene, CoordinateMatrix, Mechanics, NOTHING, Sum};
+use super::{AsMass, CoordinateMatrix, Mechanics, NOTHING, Sum};
 use crate::array::Array;
 use crate::linear::{Conditioning, Factorization, SingularMatrix, reciprocal_power_of_two};
 use crate::newton::Tally;
@@ -12,7 +12,7 @@ use crate::system::{LagrangianGradient, MechanicalSystem};
 
 /// Kinetic energy of the velocities that are removed, relative to that of the motion, up to which one projection does: the
 /// velocities are then below 1/128 of the motion's.
-const LARGEST_REST: f64 = 1.0 / 16384.0;
+pub(crate) const LARGEST_REST: f64 = 1.0 / 16384.0;
 
 /// How well `G M⁻¹ Gᵀ` determines multipliers, in units in which its diagonal is about 1.
 fn gram_conditioning<S: MechanicalSystem>(matrix: &Gram<S>) -> Conditioning {
@@ -25,7 +25,7 @@ fn gram_conditioning<S: MechanicalSystem>(matrix: &Gram<S>) -> Conditioning {
 
 /// `v = M⁻¹ (p − a)` with constant `M` and `a`.
 pub(crate) struct ConstantLegendre<S: MechanicalSystem> {
-    inverse_mass: CoordinateMatrix<S>,
+    inverse_mass: CoordinateMatrix<S, AsMass>,
     /// `a = ∂L/∂v` at `v = 0`.
     momentum_at_rest: S::PerCoordinate<f64>,
 }
@@ -47,8 +47,14 @@ impl<S: MechanicalSystem> ConstantLegendre<S> {
     /// `M⁻¹`.
     #[cfg(feature = "std")]
     #[inline(always)]
-    pub(crate) const fn inverse_mass(&self) -> &CoordinateMatrix<S> {
+    pub(crate) const fn inverse_mass(&self) -> &CoordinateMatrix<S, AsMass> {
         &self.inverse_mass
+    }
+
+    /// `a`.
+    #[cfg(feature = "std")]
+    pub(crate) const fn momentum_at_rest(&self) -> &S::PerCoordinate<f64> {
+        &self.momentum_at_rest
     }
 
     /// The velocity of the momentum `p`.
@@ -57,16 +63,20 @@ impl<S: MechanicalSystem> ConstantLegendre<S> {
         self.inverse_mass.times(|i| self.moving_momentum(p, i))
     }
 
-    /// `M v = p − a`.
-    #[inline]
+    /// `M v = p − a`; of what is added to a momentum, with the same `a`.
+    #[inline(always)]
     pub(crate) fn moving(&self, p: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
         Array::from_fn(|i| self.moving_momentum(p, i))
     }
 
-    /// `p = M v + a`, from `M v`.
-    #[inline]
+    /// `p = M v + a`, from `M v`; of what is added to it, with the same `a`.
+    #[inline(always)]
     pub(crate) fn canonical(&self, moving: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
-        Array::from_fn(|i| moving[i] + self.momentum_at_rest[i])
+        if S::STRUCTURE.momentum_vanishes_at_rest {
+            moving.clone()
+        } else {
+            Array::from_fn(|i| moving[i] + self.momentum_at_rest[i])
+        }
     }
 
     /// Factors of `G M⁻¹ Gᵀ`.
@@ -81,7 +91,7 @@ impl<S: MechanicalSystem> ConstantLegendre<S> {
         tally: &mut impl Tally,
     ) -> Result<S::GramFactors, SingularMatrix> {
         let directions = mechanics.constraint_directions(jacobian, &self.inverse_mass);
-        let matrix = mechanics.gram_matrix::<AsScene>(jacobian, &directions);
+        let matrix = mechanics.gram_matrix::<AsMass>(jacobian, &directions);
         tally.see_matrix(|| gram_conditioning::<S>(&matrix));
         let gram = S::GramFactors::factor(&matrix)?;
         if gram.is_fallback() {

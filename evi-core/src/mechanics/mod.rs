@@ -41,7 +41,7 @@ pub(crate) use constraint_rank::CONSISTENCY;
 pub use constraint_rank::{ConstraintRank, ConstraintSet};
 pub(crate) use constraints::{Directions, NOTHING};
 pub(crate) use coordinate_matrix::{CoordinateMatrix, Rows};
-pub(crate) use coupling::{AsScene, Coupling, Full};
+pub(crate) use coupling::{AsMass, AsScene, Coupling, Full};
 pub(crate) use folded_step::FoldedStep;
 pub(crate) use forces::{ForceDerivatives, ForcePoint};
 #[cfg(feature = "std")]
@@ -52,9 +52,11 @@ pub(crate) use implicit_step::{ImplicitStep, StepSolution, StepStart};
 pub(crate) use impulse_step::ImpulseStep;
 pub(crate) use kick_drift_kick::KickDriftKick;
 #[cfg(feature = "std")]
-pub(crate) use lane_step::{FirstGuess, LaneEnd, LaneStep, Passes};
+pub(crate) use lane_step::{FirstGuess, LaneEnd, LaneStep, Passes, product, reach};
 pub(crate) use leapfrog_step::LeapfrogStep;
 pub(crate) use legendre::ConstantLegendre;
+#[cfg(feature = "std")]
+pub(crate) use legendre::LARGEST_REST;
 pub use linearisation::Linearisation;
 pub(crate) use matrix_action::MatrixAction;
 pub(crate) use modes::Modes;

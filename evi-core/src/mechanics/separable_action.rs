@@ -32,7 +32,7 @@ pub(crate) struct SeparableAction<S: MechanicalSystem, const K: usize> {
     pub(crate) start_weights: [S::PerCoordinate<f64>; K],
     /// `f'ⱼ`.
     pub(crate) end_weights: [S::PerCoordinate<f64>; K],
-    /// `h wⱼ g₁ g₂`, by rows.
+    /// `−h wⱼ g₁ g₂`, by rows.
     slopes: [Rows<S>; K],
 }
 
@@ -79,7 +79,7 @@ impl<S: MechanicalSystem, const K: usize> SeparableAction<S, K> {
                 folded.start_weights[node][i] = weight * h * c.start();
                 folded.end_weights[node][i] = weight * h * c.end();
                 for k in 0..S::N_COORDINATES {
-                    folded.slopes[node][i][k] = weight * h * c.start() * action.coefficients(node, k).end();
+                    folded.slopes[node][i][k] = -weight * h * c.start() * action.coefficients(node, k).end();
                 }
             }
         });
@@ -150,9 +150,9 @@ impl<S: MechanicalSystem, const K: usize> SeparableAction<S, K> {
         let slopes = &self.slopes[node];
         for entry in S::STRUCTURE.hessian.qq {
             let value = entry.value(mechanics.constants.as_ref(), hessian);
-            kkt.add_block(entry.row, entry.col, -(slopes[entry.row][entry.col] * value));
+            kkt.add_block(entry.row, entry.col, slopes[entry.row][entry.col] * value);
             if entry.row != entry.col {
-                kkt.add_block(entry.col, entry.row, -(slopes[entry.col][entry.row] * value));
+                kkt.add_block(entry.col, entry.row, slopes[entry.col][entry.row] * value);
             }
         }
     }

@@ -37,6 +37,9 @@ pub(crate) struct DiscreteLagrangian<S: MechanicalSystem, T, const K: usize> {
     /// `wⱼ h`.
     multiplied_weights: [f64; K],
     separable: SeparableAction<S, K>,
+    /// Whether the forces of a step act on both of its ends alike: those of a single node in the middle. Then the equations of the step
+    /// tell what they are, and none is evaluated where the iteration has ended.
+    kicks_alike: bool,
 }
 
 /// How the position and the velocity times `h` at a node depend on one of the arguments of a step.
@@ -67,6 +70,8 @@ impl<S: MechanicalSystem, T: InterpolationTable, const K: usize> DiscreteLagrang
             divided_weights: quadrature.weights().map(|weight| weight / h),
             multiplied_weights: quadrature.weights().map(|weight| weight * h),
             separable: SeparableAction::none(),
+            // Exactly the middle, where the coefficients of both ends agree to the last bit.
+            kicks_alike: SeparableAction::<S, K>::EXISTS && K == 1 && quadrature.offsets()[0] == 0.0,
         };
         if SeparableAction::<S, K>::EXISTS {
             action.separable = SeparableAction::new(&action);
@@ -129,12 +134,10 @@ impl<S: MechanicalSystem, T: InterpolationTable, const K: usize> DiscreteLagrang
         momentum
     }
 
-    /// Whether the forces of a step act on both of its ends alike: those of a single node in the middle. Then the equations of the step
-    /// tell what they are, and none is evaluated where the iteration has ended.
+    /// Whether [`Self::kicks_alike`], as far as the compiler can tell.
     #[inline(always)]
     fn kicks_alike(&self) -> bool {
-        // Exactly the middle, where the coefficients of both ends agree to the last bit.
-        SeparableAction::<S, K>::EXISTS && K == 1 && self.quadrature.offsets()[0] == 0.0
+        SeparableAction::<S, K>::EXISTS && K == 1 && self.kicks_alike
     }
 
     /// `p⁻ − p₀ = (D₁ + D₂) L_d(q₀, q₀ + d) + f⁻ + f⁺ − G₀ᵀℓ`, by the step equations: the derivative of `L_d` in which both ends move

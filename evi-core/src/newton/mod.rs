@@ -13,15 +13,15 @@ pub use tally::{Fallbacks, Statistics, Tally};
 pub(crate) const TARGET: f64 = 0.25 * f64::EPSILON;
 /// A correction that no longer shrinks ends the iteration only below this length (Hairer, McLachlan,
 /// Razakarivony, BIT 48 (2008) 231: iterate until the update stops decreasing); above it, it may grow once.
-const STAGNATION: f64 = 1e-12;
+pub(crate) const STAGNATION: f64 = 1e-12;
 /// Corrections that shrink by less than this factor have stagnated.
-const STAGNATION_RATIO: f64 = 0.5;
+pub(crate) const STAGNATION_RATIO: f64 = 0.5;
 /// A frozen matrix that is good to a few percent contracts by a few hundredths; beyond this it is a bad guess.
 pub(crate) const SLOWEST_CHORD: f64 = 0.1;
 /// Corrections of a frozen matrix below this length are round-off, whatever their ratio.
 pub(crate) const CHORD_ROUND_OFF: f64 = 8.0 * f64::EPSILON;
 /// Newton from the predictors used here takes 3 to 6 corrections; a solution not found by then is not near.
-const MAX_CORRECTIONS: usize = 30;
+pub(crate) const MAX_CORRECTIONS: usize = 30;
 
 /// A converged iteration.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,13 +46,19 @@ pub(crate) struct Progress {
     /// Relative length of the last correction; 0 before the first.
     previous: f64,
     /// What it was of the one before, where convergence is linear.
+    #[cfg(feature = "std")]
     rate: f64,
 }
 
 impl Progress {
     /// The progress of an iteration that goes on after a correction of relative length `previous`.
     pub(crate) const fn after(previous: f64) -> Self {
-        Self { corrections: 0, previous, rate: 0.0 }
+        Self {
+            corrections: 0,
+            previous,
+            #[cfg(feature = "std")]
+            rate: 0.0,
+        }
     }
 
     /// Whether the iteration has converged with a correction of relative length `length`, which has been applied.

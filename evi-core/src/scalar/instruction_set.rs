@@ -25,7 +25,26 @@ enum Level {
 }
 
 /// Work on lanes.
-pub(crate) trait LaneOperation {
+///
+/// ```
+/// use evi_core::scalar::{InstructionSet, LaneOperation, Lanes};
+///
+/// struct Square<'a>(&'a mut [Lanes]);
+///
+/// impl LaneOperation for Square<'_> {
+///     type Output = ();
+///     #[inline(always)]
+///     fn run<const FUSED: bool>(self) {
+///         self.0.iter_mut().for_each(|x| *x = *x * *x);
+///     }
+/// }
+///
+/// let mut numbers = [Lanes::splat(3.0); 2];
+/// InstructionSet::detect().run(Square(&mut numbers));
+/// assert_eq!(numbers[1], Lanes::splat(9.0));
+/// ```
+pub trait LaneOperation {
+    /// What it returns.
     type Output;
 
     /// Does it; `FUSED` says that the machine has an instruction for products with a sum. Implementations are `#[inline(always)]`, as is what they call.
@@ -107,7 +126,7 @@ impl InstructionSet {
 
     /// Runs `operation` in code for this instruction set.
     #[inline(always)]
-    pub(crate) fn run<O: LaneOperation>(self, operation: O) -> O::Output {
+    pub fn run<O: LaneOperation>(self, operation: O) -> O::Output {
         match self.0 {
             #[cfg(all(feature = "dispatch", target_arch = "x86_64"))]
             Level::Avx512(avx512) => avx512.vectorize(Fused(operation)),

@@ -128,9 +128,7 @@ mod rates;
 mod tangent;
 
 #[cfg(feature = "std")]
-pub use instruction_set::InstructionSet;
-#[cfg(feature = "std")]
-pub(crate) use instruction_set::LaneOperation;
+pub use instruction_set::{InstructionSet, LaneOperation};
 pub use lanes::{LANES, Lanes};
 #[cfg(feature = "std")]
 pub(crate) use rates::Rates;

@@ -57,13 +57,13 @@ pub use scene_frequencies::{SceneFrequencies, SceneTable};
 #[non_exhaustive]
 pub enum SchemeError {
     /// The step size is zero or not a number, or its square is.
-    #[error("the step size must be finite and not zero, and its square too, got {h}")]
+    #[error("the step size must be finite and not zero, and its square too, got {h:?}")]
     StepSize {
         /// The step size.
         h: f64,
     },
     /// A frequency is negative or not finite.
-    #[error("the frequency of coordinate {coordinate} must be finite and not negative, got {value}")]
+    #[error("the frequency of coordinate {coordinate} must be finite and not negative, got {value:?}")]
     Frequency {
         /// Index of the coordinate.
         coordinate: usize,
@@ -72,7 +72,7 @@ pub enum SchemeError {
     },
     /// `ω h` is so close to a multiple of π that the interpolant through two points is not unique.
     #[error(
-        "resonant frequency of coordinate {coordinate}: sin(ω h) = {sine:e} at ω h = {phase}; \
+        "resonant frequency of coordinate {coordinate}: sin(ω h) = {sine:e} at ω h = {phase:?}; \
          below 1e-3 the interpolant is not determined. Choose ω h well below π/2"
     )]
     ResonantFrequency {
@@ -86,7 +86,7 @@ pub enum SchemeError {
     /// At this `ω h` the kinetic energy of the nodes does not determine the end of a step.
     #[error(
         "the nodes do not see the inertia of coordinate {coordinate}: its kinetic coefficient is \
-         {kinetic_coefficient:e} at |ω h| = {phase}, and 1 for small steps. Choose a smaller ω h"
+         {kinetic_coefficient:e} at |ω h| = {phase:?}, and 1 for small steps. Choose a smaller ω h"
     )]
     VanishingInertia {
         /// Index of the coordinate.
@@ -98,7 +98,7 @@ pub enum SchemeError {
     },
     /// `ω h` is so large that the curve oscillates between the nodes of a step.
     #[error(
-        "the frequency of coordinate {coordinate} oscillates between the nodes: |ω h| = {phase}, at most {limit}"
+        "the frequency of coordinate {coordinate} oscillates between the nodes: |ω h| = {phase:?}, at most {limit:?}"
     )]
     UnresolvedFrequency {
         /// Index of the coordinate.
@@ -111,7 +111,7 @@ pub enum SchemeError {
     /// At this `ω h` the functions of a curve do not determine it by its points.
     #[error(
         "the points of a step do not determine the curve of coordinate {coordinate}: the determinant is \
-         {determinant:e} at |ω h| = {phase}, and 1 for small steps. Choose a smaller ω h"
+         {determinant:e} at |ω h| = {phase:?}, and 1 for small steps. Choose a smaller ω h"
     )]
     IndeterminateCurve {
         /// Index of the coordinate.
@@ -147,7 +147,7 @@ pub enum SchemeError {
     /// A coordinate that nothing holds would grow on the curves of its frequency.
     #[error(
         "coordinate `{coordinate}` is free: L and the constraints do not depend on it. With the frequency \
-         {frequency} and these nodes its motion would grow at the rate {growth_rate:e} per unit of time. Give it \
+         {frequency:?} and these nodes its motion would grow at the rate {growth_rate:e} per unit of time. Give it \
          `Frequency::ZERO`, or use the midpoint; `allow_soft_modes` takes it as it is"
     )]
     SoftCoordinate {
@@ -160,7 +160,7 @@ pub enum SchemeError {
     },
     /// `w h` of a mode is so close to a multiple of π that its flow does not determine the end of a step by its ends.
     #[error(
-        "resonant mode {mode} of frequency {frequency}: sin(w h) = {sine:e} at w h = {phase}; below 1e-3 the \
+        "resonant mode {mode} of frequency {frequency:?}: sin(w h) = {sine:e} at w h = {phase:?}; below 1e-3 the \
          ends of a step do not determine the mode between them. Choose another step size"
     )]
     ResonantMode {
@@ -175,7 +175,7 @@ pub enum SchemeError {
     },
     /// The exact flow of a mode leaves the range of numbers.
     #[error(
-        "mode {mode} with squared frequency {squared_frequency:e} grows beyond all numbers in a step of {h}"
+        "mode {mode} with squared frequency {squared_frequency:e} grows beyond all numbers in a step of {h:?}"
     )]
     ModeOutOfRange {
         /// Number of the mode, in ascending order of the squared frequencies.
@@ -187,7 +187,7 @@ pub enum SchemeError {
     },
     /// The stiffness matrix of a scheme is not symmetric or has entries that are not finite.
     #[error(
-        "the stiffness must be symmetric and finite, got {value} in row {row}, column {col} and {mirrored} mirrored"
+        "the stiffness must be symmetric and finite, got {value:?} in row {row}, column {col} and {mirrored:?} mirrored"
     )]
     Stiffness {
         /// Row of the entry.
@@ -204,8 +204,8 @@ pub enum SchemeError {
     Linearisation(#[from] LinearisationError),
     /// The nodes of a scheme do not mirror each other, where a symmetric scheme is asked for.
     #[error(
-        "a composition raises the order of symmetric schemes only: node {node} of this one lies {offset} from the middle of \
-         the step with weight {weight}, its mirror image {mirrored_offset} with weight {mirrored_weight}"
+        "a composition raises the order of symmetric schemes only: node {node} of this one lies {offset:?} from the middle of \
+         the step with weight {weight:?}, its mirror image {mirrored_offset:?} with weight {mirrored_weight:?}"
     )]
     AsymmetricNodes {
         /// Index of the first node without a mirror image.
@@ -220,7 +220,7 @@ pub enum SchemeError {
         mirrored_weight: f64,
     },
     /// The spectral radius of a generalized-α method lies outside of `[0, 1)`.
-    #[error("the spectral radius at infinity must lie in [0, 1), got {value}")]
+    #[error("the spectral radius at infinity must lie in [0, 1), got {value:?}")]
     SpectralRadius {
         /// `ρ∞`.
         value: f64,

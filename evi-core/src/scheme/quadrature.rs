@@ -20,7 +20,7 @@ pub struct Quadrature<const S: usize> {
 #[non_exhaustive]
 pub enum QuadratureError {
     /// A node is not a number in `[0, 1]`.
-    #[error("node {index} must lie in [0, 1], got {node}")]
+    #[error("node {index} must lie in [0, 1], got {node:?}")]
     OutsideUnitInterval {
         /// Index of the node.
         index: usize,
@@ -28,7 +28,7 @@ pub enum QuadratureError {
         node: f64,
     },
     /// Two nodes coincide.
-    #[error("nodes {first} and {second} coincide at {node}")]
+    #[error("nodes {first} and {second} coincide at {node:?}")]
     CoincidingNodes {
         /// Index of one node.
         first: usize,

@@ -28,12 +28,14 @@ pub(super) fn note_kicks<S: MechanicalSystem, F: KickDriftKick<S>>(
 ) -> TakenStep<S, 1> {
     let differences = [Array::from_fn(|i| end.q[i] - start.q[i])];
     let (free, impulse) = (step.free(), step.last_impulse().clone());
-    let mut half_way = free.kicked_at_start(mechanics, start.t, &start.q, &start.p);
+    let kick = free.start_kick(mechanics, start.t, &start.q);
+    let mut half_way = S::PerCoordinate::<f64>::from_fn(|i| start.p[i] + kick[i]);
     if S::N_CONSTRAINTS > 0 {
         let (_, jacobian) = S::constraint_derivatives(&mechanics.constants, start.t, &start.q);
         mechanics.subtract_constraint_force(jacobian.as_ref(), impulse.as_ref(), half_way.as_mut());
     }
-    let arriving = free.kicked_at_end(mechanics, end.t, &end.q, &half_way);
+    let kick = free.end_kick(mechanics, end.t, &end.q);
+    let arriving = Array::from_fn(|i| half_way[i] + kick[i]);
     TakenStep { start, end: end.clone(), differences, impulses: [impulse], arriving }
 }
 

@@ -45,7 +45,7 @@ pub struct Limits {
 #[non_exhaustive]
 pub enum Stopped {
     /// The energy has changed by more than its budget.
-    #[error("at t = {t} the energy has changed by {change:e}, its budget is {budget:e}")]
+    #[error("at t = {t:?} the energy has changed by {change:e}, its budget is {budget:e}")]
     Energy {
         /// Time of the state.
         t: f64,
@@ -55,7 +55,7 @@ pub enum Stopped {
         budget: f64,
     },
     /// A constraint is violated by more than its budget.
-    #[error("at t = {t} constraint `{constraint}` is violated by {residual:e}, its budget is {budget:e}")]
+    #[error("at t = {t:?} constraint `{constraint}` is violated by {residual:e}, its budget is {budget:e}")]
     Constraint {
         /// Time of the state.
         t: f64,
@@ -68,7 +68,7 @@ pub enum Stopped {
     },
     /// The velocity leaves a constraint by more than its budget.
     #[error(
-        "at t = {t} the velocity leaves constraint `{constraint}`: G v + ∂φ/∂t is {residual:e} of its terms, its budget is \
+        "at t = {t:?} the velocity leaves constraint `{constraint}`: G v + ∂φ/∂t is {residual:e} of its terms, its budget is \
          {budget:e}"
     )]
     HiddenConstraint {

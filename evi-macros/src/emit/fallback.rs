@@ -18,10 +18,10 @@ pub(crate) fn fallback(declaration: &Declaration, diagnostics: &Diagnostics) -> 
     let generics = &declaration.generics;
     let (impl_generics, type_generics, where_clause) =
         (&generics.impl_generics, &generics.type_generics, &generics.where_clause);
-    let coordinates: Vec<String> = coordinate_names(declaration).iter().map(ToString::to_string).collect();
+    let coordinates = coordinate_names(declaration);
     let constraints = constraint_names(declaration);
     let inputs: Vec<String> = input_names(declaration).map(ToString::to_string).collect();
-    let observables: Vec<String> = observable_names(declaration).map(ToString::to_string).collect();
+    let observables = observable_names(declaration);
     let sizes = Sizes {
         n_inputs: inputs.len(),
         n_observables: observables.len(),
@@ -155,6 +155,25 @@ pub(crate) fn fallback(declaration: &Declaration, diagnostics: &Diagnostics) -> 
                 ) {
                     ::core::unimplemented!()
                 }
+            }
+        };
+    }
+}
+
+/// The mistakes as compile errors, and a stub of a scene of loops.
+pub(crate) fn assembled_fallback(declaration: &Declaration, diagnostics: &Diagnostics) -> TokenStream {
+    let errors = compile_errors(diagnostics);
+    let struct_name = &declaration.name;
+    quote! {
+        #errors
+        const _: () = {
+            #[automatically_derived]
+            #[allow(unused)]
+            impl ::evi_core::__private::AssembledSystem for #struct_name {
+                fn n_coordinates(&self) -> usize {
+                    ::core::unimplemented!()
+                }
+                fn visit_families<V: ::evi_core::__private::FamilyVisitor<Self>>(&self, visitor: &mut V) {}
             }
         };
     }

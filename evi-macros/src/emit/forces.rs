@@ -11,12 +11,13 @@ use crate::structure::Structure;
 
 /// The names of inputs and observed quantities.
 pub(super) fn names(model: &Model) -> TokenStream {
-    let list = |constant: TokenStream, names: Vec<&Ident>| {
-        let text = names.iter().map(|name| name.to_string().trim_start_matches("r#").to_owned());
-        (!names.is_empty()).then(|| quote!(const #constant: &'static [&'static str] = &[#(#text),*];))
+    let list = |constant: TokenStream, names: Vec<String>| {
+        (!names.is_empty()).then(|| quote!(const #constant: &'static [&'static str] = &[#(#names),*];))
     };
-    let inputs = list(quote!(INPUTS), model.inputs.iter().collect());
-    let observables = list(quote!(OBSERVABLES), model.observables.iter().map(|(name, _)| name).collect());
+    let text = |name: &Ident| name.to_string().trim_start_matches("r#").to_owned();
+    let inputs = list(quote!(INPUTS), model.inputs.iter().map(text).collect());
+    let observables = model.observables.iter().map(|observed| observed.name.clone());
+    let observables = list(quote!(OBSERVABLES), observables.collect());
     quote!(#inputs #observables)
 }
 

@@ -8,40 +8,48 @@ use quote::{ToTokens, format_ident, quote, quote_spanned};
 
 use super::pieces::in_pieces;
 use crate::expr::Dependence;
-use crate::model::{LagrangianSource, Model};
+use crate::model::{LagrangianSource, Model, Parameter, ParameterSource, Source, coordinate_entries};
 use crate::syntax::{Declaration, Expression};
 
 /// The implementation of `GenericSystem`.
-pub(super) fn generic_system(declaration: &Declaration, model: &Model) -> TokenStream {
+pub(super) fn generic_system(declaration: &Declaration, model: &Model, source: &Source) -> TokenStream {
     let struct_name = &declaration.name;
     let (n_coordinates, n_constraints) = (model.coordinates.len(), model.constraints.len());
-    let fields = || model.parameters.iter().map(|&field| &declaration.fields[field].name);
-    let shared = model.source.lets.iter().map(|shared| &shared.name);
+    let field = |parameter: &Parameter| match parameter.source {
+        ParameterSource::Field { field, .. } => &declaration.fields[field].name,
+        ParameterSource::Index(_) => unreachable!("where there are no vectors there are no indices"),
+    };
+    let fields = || model.parameters.iter().map(field);
+    let coordinates: Vec<&Ident> = coordinate_entries(declaration).iter().map(|entry| &entry.name).collect();
+    let shared = model.lets.iter().map(|shared| &shared.name);
     let inputs = &model.inputs;
     let rewriter = Rewriter {
         constants: model.named_constants.iter().map(TokenStream::to_string).collect(),
-        names: fields().chain(&model.coordinates).chain(inputs).chain(shared).map(Ident::to_string).collect(),
+        names: fields()
+            .chain(coordinates.iter().copied())
+            .chain(inputs)
+            .chain(shared)
+            .map(Ident::to_string)
+            .collect(),
     };
     let parameters: TokenStream = fields()
         .map(|field| (local_name(field), field))
         .map(|(name, field)| quote!(let #name = T::from_f64(self.#field);))
         .collect();
-    let positions: TokenStream = model
-        .coordinates
+    let positions: TokenStream = coordinates
         .iter()
         .enumerate()
         .map(|(i, name)| (i, local_name(name)))
         .map(|(i, name)| quote!(let #name = __q[#i];))
         .collect();
-    let velocities: TokenStream = model
-        .coordinates
+    let velocities: TokenStream = coordinates
         .iter()
         .enumerate()
         .map(|(i, name)| (i, velocity_name(name)))
         .map(|(i, name)| quote!(let #name = __v[#i];))
         .collect();
     let lets = |is_usable: fn(Dependence) -> bool| -> TokenStream {
-        let usable = model.source.lets.iter().filter(|shared| is_usable(shared.on));
+        let usable = model.lets.iter().filter(|shared| is_usable(shared.on));
         usable
             .map(|shared| (local_name(&shared.name), rewriter.expression(&shared.value)))
             .map(|(name, value)| quote!(let #name = #value;))
@@ -52,12 +60,13 @@ pub(super) fn generic_system(declaration: &Declaration, model: &Model) -> TokenS
     let all_lets = lets(|_| true);
     let forces = forces(
         model,
+        source,
         &rewriter,
         &quote!(#parameters #positions #velocities #motion_lets),
         &quote!(#parameters #positions #velocities),
         &all_lets,
     );
-    let lagrangian = match &model.source.lagrangian {
+    let lagrangian = match &source.lagrangian {
         LagrangianSource::Whole(lagrangian) => {
             let lagrangian = rewriter.expression(lagrangian);
             // In parentheses: where a statement may stand, `{ .. } + x` would end behind the block.
@@ -68,7 +77,7 @@ pub(super) fn generic_system(declaration: &Declaration, model: &Model) -> TokenS
             quote!((#kinetic) - (#potential))
         }
     };
-    let residuals = model.source.constraints.iter().enumerate().map(|(c, (left, right))| {
+    let residuals = source.constraints.iter().enumerate().map(|(c, (left, right))| {
         let (left, right) = (rewriter.expression(left), rewriter.expression(right));
         quote!(__residuals[#c] = (#left) - (#right);)
     });
@@ -102,6 +111,7 @@ pub(super) fn generic_system(declaration: &Declaration, model: &Model) -> TokenS
 /// The methods for forces that are no derivatives of `L`, where the scene has some.
 fn forces(
     model: &Model,
+    source: &Source,
     rewriter: &Rewriter,
     motion: &TokenStream,
     variables: &TokenStream,
@@ -115,7 +125,7 @@ fn forces(
             }
         }
     });
-    let dissipation = model.source.dissipation.as_ref().map(|dissipation| {
+    let dissipation = source.dissipation.as_ref().map(|dissipation| {
         let dissipation = rewriter.expression(dissipation);
         quote! {
             const HAS_DISSIPATION: bool = true;
@@ -133,11 +143,11 @@ fn forces(
         .map(|(i, name)| (i, local_name(name)))
         .map(|(i, name)| quote!(let #name = __u[#i];))
         .collect();
-    let summands = model.source.forces.iter().map(|(coordinate, force)| {
+    let summands = source.forces.iter().map(|(coordinate, force)| {
         let force = rewriter.expression(force);
         quote!(__forces[#coordinate] = __forces[#coordinate] + (#force);)
     });
-    let generalized = (!model.source.forces.is_empty()).then(|| {
+    let generalized = (!source.forces.is_empty()).then(|| {
         quote! {
             const HAS_FORCES: bool = true;
 

@@ -1,6 +1,6 @@
 //! The implementation of `MechanicalSystem`.
 
-use proc_macro2::{Ident, TokenStream};
+use proc_macro2::TokenStream;
 use quote::quote;
 
 use super::elimination::elimination_type;
@@ -8,7 +8,9 @@ use super::forces;
 use super::generic::generic_system;
 use super::kernel::Writer;
 use super::report::{report, source};
-use super::storage::{Sizes, associated_types};
+use super::storage::{Sizes, associated_types, dense_solvers};
+use super::subject::Subject;
+use super::{generic_graph, indices};
 use crate::expr::{Dependence, ExprId, Graph};
 use crate::model::{Model, WrittenEquation};
 use crate::schedule::{ConstantSlots, Operations, Program, Programs};
@@ -25,9 +27,37 @@ pub(crate) fn implementation(
     programs: &Programs,
     written: &[WrittenEquation],
 ) -> TokenStream {
-    let struct_name = &declaration.name;
-    let generic_system = generic_system(declaration, model);
-    let names = names(declaration, model);
+    let subject = Subject::of_declaration(declaration, model);
+    let generic_system = match &model.source {
+        Some(source) => generic_system(declaration, model, source),
+        None => generic_graph::generic_system(&subject, model, graph),
+    };
+    let bounds = indices::bounds(&model.bounds);
+    let others = quote!(#generic_system #bounds);
+    mechanical_system(&subject, model, graph, programs, written, Solvers::Own, &others)
+}
+
+/// Which linear solvers a scene has.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Solvers {
+    /// Eliminations for its own patterns.
+    Own,
+    /// Dense ones, which are compiled only where they are used.
+    Dense,
+}
+
+/// The implementation of `MechanicalSystem` for a struct, with what else belongs to it.
+pub(super) fn mechanical_system(
+    subject: &Subject,
+    model: &Model,
+    graph: &Graph,
+    programs: &Programs,
+    written: &[WrittenEquation],
+    solvers: Solvers,
+    others: &TokenStream,
+) -> TokenStream {
+    let struct_name = &subject.name;
+    let names = names(subject, model);
     let structure = structure(programs);
     let sizes = Sizes {
         n_coordinates: model.coordinates.len(),
@@ -41,8 +71,11 @@ pub(crate) fn implementation(
         n_force_entries: programs.structure.force_entries.len(),
     };
     let types = associated_types(&sizes);
-    let (solver_types, solvers) = solvers(&sizes, &programs.structure);
-    let fields: Vec<&Ident> = model.parameters.iter().map(|&field| &declaration.fields[field].name).collect();
+    let (solver_types, solvers) = match solvers {
+        Solvers::Own => own_solvers(&sizes, &programs.structure),
+        Solvers::Dense => (TokenStream::new(), dense_solvers(sizes.n_coordinates, sizes.n_constraints)),
+    };
+    let parameters = &subject.values;
     let kernels = Kernels { graph, model, slots: &programs.slots };
     let frequencies = forces::frequencies(struct_name, &kernels, programs);
     let optional = [
@@ -75,24 +108,24 @@ pub(crate) fn implementation(
 
                     #[inline]
                     fn parameters(&self) -> Self::PerParameter<f64> {
-                        [#(self.#fields),*]
+                        [#(#parameters),*]
                     }
 
                     #kernels
                 }
 
                 #frequencies
-                #generic_system
+                #others
             };
         }
     };
     let source = source(|| system(TokenStream::new()));
-    let report = report(declaration, written, programs);
+    let report = report(&struct_name.to_string(), written, programs);
     system(quote!(#report #source))
 }
 
 /// The scene's own eliminations, as types and as the associated types that name them.
-fn solvers(sizes: &Sizes, structure: &Structure) -> (TokenStream, TokenStream) {
+fn own_solvers(sizes: &Sizes, structure: &Structure) -> (TokenStream, TokenStream) {
     let (n, m) = (sizes.n_coordinates, sizes.n_constraints);
     let (kkt_type, kkt) = solver("KktElimination", n + m, structure.kkt_elimination(n, m));
     let (mass_type, mass) = solver("MassElimination", n, structure.mass_elimination(n));
@@ -124,11 +157,10 @@ fn solver(name: &str, dimension: usize, elimination: Option<Elimination>) -> (To
 }
 
 /// The names of coordinates, constraints and parameters.
-fn names(declaration: &Declaration, model: &Model) -> TokenStream {
-    let text = |name: &Ident| name.to_string().trim_start_matches("r#").to_owned();
-    let coordinates = model.coordinates.iter().map(text);
-    let constraints = model.constraints.iter().map(|(name, _)| text(name));
-    let parameters = model.parameters.iter().map(|&field| text(&declaration.fields[field].name));
+fn names(subject: &Subject, model: &Model) -> TokenStream {
+    let coordinates = &model.coordinates;
+    let constraints = model.constraints.iter().map(|constraint| &constraint.name);
+    let parameters = &subject.parameters;
     let optional = forces::names(model);
     quote! {
         const COORDINATES: &'static [&'static str] = &[#(#coordinates),*];

@@ -4,6 +4,7 @@ use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{format_ident, quote};
 
 use crate::expr::{Binary, ExprId, Graph, Node, Symbol, Unary};
+use crate::model::Parameter;
 use crate::schedule::{ConstantSlots, Place, Program, Statement};
 
 /// Scopes per function: a scope has at most 200 `let`s and hands on at most 400 values (a sine with its cosine names
@@ -14,8 +15,8 @@ const SCOPES_PER_FUNCTION: usize = 8;
 pub(super) struct Writer<'a> {
     pub(super) graph: &'a Graph,
     pub(super) named_constants: &'a [TokenStream],
-    /// The parameters' fields, in the order of the input `p`.
-    pub(super) parameters: &'a [usize],
+    /// The parameters, in the order of the input `p`.
+    pub(super) parameters: &'a [Parameter],
     /// The nodes that the input `c` holds; empty for the program that computes them.
     pub(super) slots: &'a ConstantSlots,
     /// The inputs as declared in a function's head: `c: &[T; 3], t: T, ..`.
@@ -152,8 +153,8 @@ impl Writer<'_> {
             Node::Symbol(Symbol::Velocity(index)) => Some(quote!(v[#index])),
             Node::Symbol(Symbol::Time) => Some(quote!(t)),
             Node::Symbol(Symbol::Input(index)) => Some(quote!(u[#index])),
-            Node::Symbol(Symbol::Parameter(field)) => {
-                let index = self.parameters.iter().position(|&parameter| parameter == field);
+            Node::Symbol(Symbol::Parameter(symbol)) => {
+                let index = self.parameters.iter().position(|parameter| parameter.symbol == symbol);
                 let index = index.expect("a parameter in the graph is a parameter of the model");
                 Some(quote!(p[#index]))
             }
@@ -161,6 +162,7 @@ impl Writer<'_> {
                 let path = &self.named_constants[index];
                 Some(quote!(T::from_f64(#path as f64)))
             }
+            Node::Symbol(Symbol::Composite(_)) => unreachable!("loops and vectors are no part of a program"),
             Node::Unary(..) | Node::Binary(..) | Node::Power(..) => None,
         }
     }

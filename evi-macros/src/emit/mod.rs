@@ -2,15 +2,20 @@
 //!
 //! Emitted code names `::evi_core::__private` and its own items, nothing else, and stands in an anonymous constant.
 
+mod assembled;
 mod elimination;
 mod fallback;
 mod forces;
 mod generic;
+mod generic_graph;
 mod implementation;
+mod indices;
 mod kernel;
 mod pieces;
 mod report;
 mod storage;
+mod subject;
 
-pub(crate) use fallback::{compile_errors, fallback};
+pub(crate) use assembled::assembled;
+pub(crate) use fallback::{assembled_fallback, compile_errors, fallback};
 pub(crate) use implementation::implementation;

@@ -6,15 +6,9 @@ use quote::quote;
 use super::implementation::operations;
 use crate::model::{Formula, WrittenEquation};
 use crate::schedule::Programs;
-use crate::syntax::Declaration;
 
 /// `MechanicalSystem::REPORT`.
-pub(super) fn report(
-    declaration: &Declaration,
-    written: &[WrittenEquation],
-    programs: &Programs,
-) -> TokenStream {
-    let name = declaration.name.to_string();
+pub(super) fn report(name: &str, written: &[WrittenEquation], programs: &Programs) -> TokenStream {
     let equations = written.iter().map(|WrittenEquation { name, left, right }| {
         let (left, right) = (formula(left), formula(right));
         quote!(::evi_core::__private::Equation { name: #name, left: #left, right: #right })

@@ -45,7 +45,7 @@ pub(super) fn associated_types(sizes: &Sizes) -> TokenStream {
     }
 }
 
-/// The solvers of a system whose equations are not known.
+/// The solvers of a system whose equations are not known, or that takes no steps.
 pub(super) fn dense_solvers(n_coordinates: usize, n_constraints: usize) -> TokenStream {
     let n_unknowns = n_coordinates + n_constraints;
     quote! {

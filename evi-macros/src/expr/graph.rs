@@ -5,6 +5,7 @@
 
 use std::collections::HashMap;
 
+use super::composite::Composite;
 use super::operator::{Binary, Unary};
 
 /// Index of a node.
@@ -35,7 +36,7 @@ impl Number {
 /// What an expression is made of besides numbers.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
 pub(crate) enum Symbol {
-    /// Field of the struct, by its index there.
+    /// Parameter, by its index in the model's table: a field of the struct, an element of a field, an index as a number.
     Parameter(usize),
     /// Named constant that rustc resolves, by its index in the model.
     NamedConstant(usize),
@@ -47,6 +48,8 @@ pub(crate) enum Symbol {
     Time,
     /// Input that the caller sets at every step, by its index.
     Input(usize),
+    /// Expression of arrays that is no node, by its index in the graph's table.
+    Composite(usize),
 }
 
 /// The kinds of variables below a node.
@@ -82,12 +85,23 @@ pub(crate) struct Graph {
     // Looked up, never iterated: its order must not reach the output.
     ids: HashMap<Node, ExprId>,
     keeps_operand_order: bool,
+    composites: Vec<(Composite, Dependence)>,
 }
 
 impl Graph {
     /// A graph whose commutative operands stay in the order of the source: for expressions that are printed.
     pub(crate) fn as_written() -> Self {
         Self { keeps_operand_order: true, ..Self::default() }
+    }
+
+    /// Whether it is a graph of expressions to be printed.
+    pub(crate) fn is_as_written(&self) -> bool {
+        self.keeps_operand_order
+    }
+
+    /// Number of nodes.
+    pub(crate) fn len(&self) -> usize {
+        self.nodes.len()
     }
 
     pub(crate) fn node(&self, id: ExprId) -> Node {
@@ -121,6 +135,25 @@ impl Graph {
 
     pub(crate) fn symbol(&mut self, symbol: Symbol) -> ExprId {
         self.insert(Node::Symbol(symbol))
+    }
+
+    /// The symbol of an expression of arrays, which depends on what its operands do and on `own`.
+    pub(crate) fn composite(&mut self, composite: Composite, own: Dependence) -> ExprId {
+        let operands = composite.operands().into_iter();
+        let dependence = operands.fold(own, |union, operand| union.union(self.dependence(operand)));
+        // Sums stay apart, each at its place in the source.
+        let is_sum = matches!(composite, Composite::Sum { .. });
+        let known = self.composites.iter().position(|(known, _)| !is_sum && *known == composite);
+        let index = known.unwrap_or_else(|| {
+            self.composites.push((composite, dependence));
+            self.composites.len() - 1
+        });
+        self.symbol(Symbol::Composite(index))
+    }
+
+    /// The expression of arrays that a symbol stands for.
+    pub(crate) fn composite_at(&self, index: usize) -> &Composite {
+        &self.composites[index].0
     }
 
     pub(crate) fn unary(&mut self, operator: Unary, operand: ExprId) -> ExprId {
@@ -197,6 +230,36 @@ impl Graph {
         self.reachable(roots, |_| false).into_iter().filter_map(symbol).collect()
     }
 
+    /// The nodes below and including `roots`, and those that expressions of arrays are made of.
+    pub(crate) fn reachable_in_loops(&self, roots: &[ExprId]) -> std::collections::BTreeSet<ExprId> {
+        let mut seen = std::collections::BTreeSet::new();
+        let mut pending: Vec<ExprId> = roots.to_vec();
+        while let Some(id) = pending.pop() {
+            if seen.insert(id) {
+                pending.extend(self.operands(id));
+                if let Node::Symbol(Symbol::Composite(index)) = self.node(id) {
+                    pending.extend(self.composites[index].0.operands());
+                }
+            }
+        }
+        seen
+    }
+
+    /// The symbols below `roots` and in the bodies of sums, in order.
+    pub(crate) fn symbols_in_loops(&self, roots: &[ExprId]) -> std::collections::BTreeSet<Symbol> {
+        let symbol = |id| match self.node(id) {
+            Node::Symbol(symbol) => Some(symbol),
+            _ => None,
+        };
+        self.reachable_in_loops(roots).into_iter().filter_map(symbol).collect()
+    }
+
+    /// Whether a node is an array or an element of one.
+    pub(crate) fn is_element(&self, id: ExprId) -> bool {
+        matches!(self.node(id), Node::Symbol(Symbol::Composite(index))
+            if matches!(self.composites[index].0, Composite::Element { .. } | Composite::Index(_)))
+    }
+
     /// Checks the invariants in debug builds.
     pub(crate) fn verify(&self) {
         if cfg!(debug_assertions) {
@@ -218,6 +281,7 @@ impl Graph {
             Node::Symbol(Symbol::Velocity(_)) => Dependence { on_v: true, ..Dependence::default() },
             Node::Symbol(Symbol::Time) => Dependence { on_t: true, ..Dependence::default() },
             Node::Symbol(Symbol::Input(_)) => Dependence { on_inputs: true, ..Dependence::default() },
+            Node::Symbol(Symbol::Composite(index)) => self.composites[index].1,
             Node::Number(_) | Node::Symbol(_) => Dependence::default(),
             Node::Unary(_, operand) | Node::Power(operand, _) => self.dependence(operand),
             Node::Binary(_, first, second) => self.dependence(first).union(self.dependence(second)),

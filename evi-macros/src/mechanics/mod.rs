@@ -5,7 +5,7 @@
 
 use crate::differentiate::{partial, rate};
 use crate::expr::{ExprId, Graph, Symbol, substitute};
-use crate::model::{Forces, Model};
+use crate::model::{Forces, Model, Named};
 use crate::simplify::Simplifier;
 
 /// The Lagrangian, the constraints, and their derivatives.
@@ -76,7 +76,7 @@ pub(crate) fn differentiate_equations(graph: &mut Graph, model: &Model) -> Equat
     let momentum: Vec<ExprId> =
         (0..n).map(|i| calculus.partial_or_zero(lagrangian, Symbol::Velocity(i))).collect();
     let constraints: Vec<ExprId> =
-        model.constraints.iter().map(|(_, residual)| calculus.simplified(*residual)).collect();
+        model.constraints.iter().map(|constraint| calculus.simplified(constraint.root)).collect();
     let mut equations = Equations {
         hessian_qq: calculus.jacobian(&force, n, Symbol::Coordinate, is_lower),
         hessian_vq: calculus.jacobian(&momentum, n, Symbol::Coordinate, |_, _| true),
@@ -96,7 +96,8 @@ pub(crate) fn differentiate_equations(graph: &mut Graph, model: &Model) -> Equat
     };
     equations.forces = calculus.forces(&model.forces, n);
     equations.frequencies = calculus.frequencies(&model.frequencies, n);
-    equations.observables = model.observables.iter().map(|(_, root)| calculus.simplified(*root)).collect();
+    equations.observables =
+        model.observables.iter().map(|observed| calculus.simplified(observed.root)).collect();
     // Last: nodes that are read for the structure only do not change the order of those that are computed.
     equations.at_rest =
         AtRest { force: calculus.at_rest(&equations.force), momentum: calculus.at_rest(&equations.momentum) };
@@ -149,8 +150,8 @@ impl Calculus<'_> {
     /// The sum of the generalized forces and that of the dissipation, with its derivatives.
     fn forces(&mut self, forces: &Forces, n: usize) -> ForceEquations {
         let mut values: Vec<Option<ExprId>> = vec![None; n];
-        for &(i, _, root) in &forces.generalized {
-            values[i] = Some(root);
+        for (i, force) in &forces.generalized {
+            values[*i] = Some(force.root);
         }
         if let Some((_, dissipation)) = forces.dissipation {
             for (i, value) in values.iter_mut().enumerate() {
@@ -181,13 +182,13 @@ impl Calculus<'_> {
     }
 
     /// One frequency per coordinate, zero where none is given; empty if all are missing.
-    fn frequencies(&mut self, frequencies: &[(usize, ExprId)], n: usize) -> Vec<ExprId> {
+    fn frequencies(&mut self, frequencies: &[(usize, Named)], n: usize) -> Vec<ExprId> {
         if frequencies.is_empty() {
             return Vec::new();
         }
         let mut values = vec![self.graph.number(0.0); n];
-        for &(i, root) in frequencies {
-            values[i] = self.simplified(root);
+        for (i, frequency) in frequencies {
+            values[*i] = self.simplified(frequency.root);
         }
         values
     }

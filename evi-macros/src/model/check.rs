@@ -4,16 +4,19 @@ use std::collections::{HashMap, HashSet};
 
 use proc_macro2::{Ident, Span};
 
-use super::{coordinate_names, input_names};
+use super::families::Named;
+use super::resolve::Scope;
+use super::sizes;
 use crate::diagnostics::Diagnostics;
 use crate::expr::{ExprId, Graph, Symbol};
-use crate::syntax::{Declaration, Expression, Item, Labelled};
+use crate::syntax::{Declaration, Expression, Indexed, Item, Labelled};
 
 /// Reports names that are reserved or given twice.
 pub(super) fn names(declaration: &Declaration, diagnostics: &mut Diagnostics) {
     let fields = declaration.fields.iter().map(|field| ("a field", &field.name));
-    let coordinates = coordinate_names(declaration).iter().map(|name| ("a coordinate", name));
-    let inputs = input_names(declaration).map(|name| ("an input", name));
+    let coordinates =
+        sizes::coordinate_entries(declaration).iter().map(|entry| ("a coordinate", &entry.name));
+    let inputs = sizes::input_names(declaration).map(|name| ("an input", name));
     let lets = declaration.items.iter().filter_map(|item| match item {
         Item::Let(definition) => Some(("a shared expression", &definition.name)),
         _ => None,
@@ -27,15 +30,16 @@ pub(super) fn names(declaration: &Declaration, diagnostics: &mut Diagnostics) {
             diagnostics.report(name.span(), format!("the name `{name}` is taken by {owner}"));
         }
     }
-    let constraints = super::constraints(declaration).filter_map(|constraint| constraint.name.as_ref());
+    let constraints = sizes::constraints(declaration)
+        .filter_map(|constraint| constraint.name.as_ref().map(|indexed| &indexed.name));
     distinct(constraints, diagnostics, |name| {
         format!("there is a constraint `{name}` already: each needs a name of its own")
     });
-    distinct(super::observable_names(declaration), diagnostics, |name| {
+    distinct(sizes::observables(declaration).map(|indexed| &indexed.name), diagnostics, |name| {
         format!("there is an observed quantity `{name}` already: each needs a name of its own")
     });
     let forces = declaration.items.iter().filter_map(|item| match item {
-        Item::Force(Labelled { names, .. }) => names.first(),
+        Item::Force(Labelled { names, .. }) => names.first().and_then(without_brackets),
         _ => None,
     });
     distinct(forces, diagnostics, |name| {
@@ -45,7 +49,14 @@ pub(super) fn names(declaration: &Declaration, diagnostics: &mut Diagnostics) {
         Item::Frequency(Labelled { names, .. }) => Some(names),
         _ => None,
     });
-    distinct(frequencies.flatten(), diagnostics, |name| format!("`{name}` has a frequency already"));
+    distinct(frequencies.flatten().filter_map(without_brackets), diagnostics, |name| {
+        format!("`{name}` has a frequency already")
+    });
+}
+
+/// The name of what has no brackets: elements are told apart where their indices are known.
+fn without_brackets(indexed: &Indexed) -> Option<&Ident> {
+    indexed.brackets.is_empty().then_some(&indexed.name)
 }
 
 /// Reports every name that has stood before.
@@ -109,9 +120,9 @@ pub(super) fn items(declaration: &Declaration, diagnostics: &mut Diagnostics) {
         // Reported already: what seems to be missing may be what is unknown.
         return;
     }
-    match super::coordinates(declaration) {
+    match sizes::coordinates(declaration) {
         None => diagnostics.report(struct_name, "the coordinates are missing: write `coordinates(x, y, ..)`"),
-        Some(coordinates) if coordinates.is_complete && coordinates.names.is_empty() => {
+        Some(coordinates) if coordinates.is_complete && coordinates.entries.is_empty() => {
             diagnostics.report(coordinates.keyword.span(), "a mechanical system has at least one coordinate");
         }
         Some(_) => {}
@@ -134,7 +145,7 @@ pub(super) fn items(declaration: &Declaration, diagnostics: &mut Diagnostics) {
 
 /// Reports coordinates whose velocity no energy contains: their mass would be zero.
 pub(super) fn every_coordinate_has_inertia(
-    declaration: &Declaration,
+    scope: &Scope<'_>,
     kinetic: &Option<(ExprId, Expression)>,
     lagrangian: &Option<(ExprId, Expression)>,
     graph: &Graph,
@@ -145,26 +156,26 @@ pub(super) fn every_coordinate_has_inertia(
         (None, Some((root, _))) => (*root, "the Lagrangian"),
         (None, None) => return,
     };
-    let symbols = graph.symbols(&[root]);
-    let names = coordinate_names(declaration);
-    for (index, name) in names.iter().enumerate() {
-        let is_repeated = names[..index].contains(name);
-        if !is_repeated && !symbols.contains(&Symbol::Velocity(index)) {
+    let symbols = graph.symbols_in_loops(&[root]);
+    for (array, entry) in scope.entries().iter().enumerate() {
+        let is_repeated = scope.entries()[..array].iter().any(|earlier| earlier.name == entry.name);
+        let missing = scope.without_velocity(array, &symbols);
+        if let Some(name) = missing.filter(|_| !is_repeated) {
             let message = format!("coordinate `{name}` has no mass: `der({name})` is missing in {place}");
-            diagnostics.report(name.span(), message);
+            diagnostics.report(entry.name.span(), message);
         }
     }
 }
 
 /// Reports a constraint that no motion can change.
 pub(super) fn constraint_moves_with_coordinates(
-    name: &Ident,
-    residual: ExprId,
+    constraint: &Named,
     graph: &Graph,
     diagnostics: &mut Diagnostics,
 ) {
-    if !graph.dependence(residual).on_q {
-        diagnostics.report(name.span(), format!("constraint `{name}` contains no coordinate"));
+    if !graph.dependence(constraint.root).on_q {
+        let message = format!("constraint `{}` contains no coordinate", constraint.name);
+        diagnostics.report(constraint.span, message);
     }
 }
 
@@ -189,7 +200,7 @@ pub(super) fn inputs_are_used(
     diagnostics: &mut Diagnostics,
 ) {
     let symbols = graph.symbols(equations);
-    for (index, input) in input_names(declaration).enumerate() {
+    for (index, input) in sizes::input_names(declaration).enumerate() {
         if !symbols.contains(&Symbol::Input(index)) {
             let message = format!("input `{input}` is named by no force and no observed quantity");
             diagnostics.report(input.span(), message);

@@ -3,27 +3,39 @@
 //! In: a [`Declaration`]. Out: a [`Model`], or `None` with mistakes reported. Everything is looked at before
 //! giving up.
 
+mod assembled;
 mod check;
+mod families;
 mod found;
 mod resolve;
+mod sizes;
+mod tables;
 mod variables;
 mod written;
 
+pub(crate) use assembled::{Assembled, Family, resolve_assembled};
+pub(crate) use families::Named;
+pub(crate) use sizes::{
+    constraint_names, coordinate_entries, coordinate_names, expansion, has_frequencies, input_names,
+    observable_names,
+};
+pub(crate) use tables::{Bound, IndexRange, Parameter, ParameterSource, Place};
 pub(crate) use written::{Formula, WrittenEquation, written};
 
 use proc_macro2::{Ident, TokenStream};
 
 use crate::diagnostics::Diagnostics;
 use crate::expr::{Dependence, ExprId, Graph};
-use crate::syntax::{Constraint, Coordinates, Declaration, Expression, Item, Labelled};
+use crate::syntax::{Declaration, Expansion, Expression};
 use found::Found;
 use resolve::Scope;
 
 /// A Lagrangian system in the graph.
 pub(crate) struct Model {
-    pub(crate) coordinates: Vec<Ident>,
-    /// The fields that the equations name, by their index in the struct.
-    pub(crate) parameters: Vec<usize>,
+    /// The names of the coordinates, elements of arrays included.
+    pub(crate) coordinates: Vec<String>,
+    /// What the equations name of the fields, in their order.
+    pub(crate) parameters: Vec<Parameter>,
     /// The constants that rustc resolves, as written.
     pub(crate) named_constants: Vec<TokenStream>,
     /// `L(t, q, v)`.
@@ -31,17 +43,21 @@ pub(crate) struct Model {
     /// What `L` is made of, in the order kinetic, potential.
     pub(crate) energies: Vec<Energy>,
     /// `φ = LHS − RHS`, with their names.
-    pub(crate) constraints: Vec<(Ident, ExprId)>,
+    pub(crate) constraints: Vec<Named>,
     /// What the caller sets at every step.
     pub(crate) inputs: Vec<Ident>,
     /// What is no derivative of `L`.
     pub(crate) forces: Forces,
     /// Frequencies of the interpolating curves, by coordinate.
-    pub(crate) frequencies: Vec<(usize, ExprId)>,
+    pub(crate) frequencies: Vec<(usize, Named)>,
     /// Quantities to record, with their names.
-    pub(crate) observables: Vec<(Ident, ExprId)>,
-    /// The user's expressions, for the copy that is generic over the scalar.
-    pub(crate) source: Source,
+    pub(crate) observables: Vec<Named>,
+    /// Indices that rustc checks.
+    pub(crate) bounds: Vec<Bound>,
+    /// Shared subexpressions.
+    pub(crate) lets: Vec<SourceLet>,
+    /// The user's expressions, for the copy that is generic over the scalar; `None` where they hold vectors, which that copy has not.
+    pub(crate) source: Option<Source>,
 }
 
 /// Forces beside those of `L`.
@@ -50,7 +66,7 @@ pub(crate) struct Forces {
     /// Rayleigh's function `D`, with its keyword: the force is `−∂D/∂v`.
     pub(crate) dissipation: Option<(Ident, ExprId)>,
     /// Generalized forces, by coordinate, with the name at which the user gives them.
-    pub(crate) generalized: Vec<(usize, Ident, ExprId)>,
+    pub(crate) generalized: Vec<(usize, Named)>,
 }
 
 /// An energy as an item of its own.
@@ -62,7 +78,6 @@ pub(crate) struct Energy {
 
 /// The user's expressions in the user's order.
 pub(crate) struct Source {
-    pub(crate) lets: Vec<SourceLet>,
     pub(crate) lagrangian: LagrangianSource,
     /// Left and right sides.
     pub(crate) constraints: Vec<(Expression, Expression)>,
@@ -75,7 +90,8 @@ pub(crate) struct Source {
 pub(crate) struct SourceLet {
     pub(crate) name: Ident,
     pub(crate) value: Expression,
-    pub(crate) root: ExprId,
+    /// Its number; `None` for a vector.
+    pub(crate) root: Option<ExprId>,
     /// What it depends on: with velocities it has no place among the constraints, with inputs only among the forces.
     pub(crate) on: Dependence,
 }
@@ -92,72 +108,37 @@ impl Energy {
     }
 }
 
-/// The coordinates in the order of their declaration, right or wrong.
-pub(crate) fn coordinate_names(declaration: &Declaration) -> &[Ident] {
-    coordinates(declaration).map_or(&[], |coordinates| &coordinates.names)
-}
-
-/// The constraints in the order of their declaration, right or wrong, those without a name included.
-pub(crate) fn constraint_names(declaration: &Declaration) -> Vec<String> {
-    let name = |constraint: &Constraint| constraint.name.as_ref().map_or_else(String::new, Ident::to_string);
-    constraints(declaration).map(name).collect()
-}
-
-/// The inputs in the order of their declaration, right or wrong.
-pub(crate) fn input_names(declaration: &Declaration) -> impl Iterator<Item = &Ident> {
-    let names = declaration.items.iter().filter_map(|item| match item {
-        Item::Inputs(inputs) => Some(&inputs.names),
-        _ => None,
-    });
-    names.flatten()
-}
-
-/// The observed quantities in the order of their declaration, right or wrong.
-pub(crate) fn observable_names(declaration: &Declaration) -> impl Iterator<Item = &Ident> {
-    declaration.items.iter().filter_map(|item| match item {
-        Item::Observe(Labelled { names, .. }) => names.first(),
-        _ => None,
-    })
-}
-
-/// Whether some coordinate has a frequency, right or wrong.
-pub(crate) fn has_frequencies(declaration: &Declaration) -> bool {
-    declaration.items.iter().any(|item| matches!(item, Item::Frequency(_)))
-}
-
-fn coordinates(declaration: &Declaration) -> Option<&Coordinates> {
-    declaration.items.iter().find_map(|item| match item {
-        Item::Coordinates(coordinates) => Some(coordinates),
-        _ => None,
-    })
-}
-
-fn constraints(declaration: &Declaration) -> impl Iterator<Item = &Constraint> {
-    declaration.items.iter().filter_map(|item| match item {
-        Item::Constraint(constraint) => Some(constraint),
-        _ => None,
-    })
-}
-
 /// Resolves every name and builds the equations in `graph`.
 pub(crate) fn resolve(
     declaration: &Declaration,
     graph: &mut Graph,
     diagnostics: &mut Diagnostics,
 ) -> Option<Model> {
+    let expansion = if graph.is_as_written() { Expansion::Written } else { Expansion::Unrolled };
+    let (found, scope) = equations(declaration, expansion, graph, diagnostics)?;
+    found.into_model(declaration, scope, graph)
+}
+
+/// What the items give, if they have no mistakes.
+fn equations<'a>(
+    declaration: &'a Declaration,
+    expansion: Expansion,
+    graph: &mut Graph,
+    diagnostics: &mut Diagnostics,
+) -> Option<(Found, Scope<'a>)> {
     if declaration.has_mistaken_shape {
         return None;
     }
     check::names(declaration, diagnostics);
     check::items(declaration, diagnostics);
-    let mut scope = Scope::new(declaration);
+    let mut scope = Scope::new(declaration, expansion);
     let mut found = Found::default();
     for item in &declaration.items {
         found.add(item, &mut scope, graph, diagnostics);
     }
-    check::every_coordinate_has_inertia(declaration, &found.kinetic, &found.whole, graph, diagnostics);
-    for (name, residual, _) in &found.constraints {
-        check::constraint_moves_with_coordinates(name, *residual, graph, diagnostics);
+    check::every_coordinate_has_inertia(&scope, &found.kinetic, &found.whole, graph, diagnostics);
+    for constraint in &found.constraints {
+        check::constraint_moves_with_coordinates(constraint, graph, diagnostics);
     }
     if let Some((keyword, dissipation, _)) = &found.dissipation {
         check::dissipation_has_velocities(keyword, *dissipation, graph, diagnostics);
@@ -166,8 +147,5 @@ pub(crate) fn resolve(
         // Elsewhere, what names the input may be what is mistaken.
         check::inputs_are_used(declaration, &found.roots_with_inputs(), graph, diagnostics);
     }
-    if !diagnostics.is_empty() {
-        return None;
-    }
-    found.into_model(declaration, scope.into_named_constants(), graph)
+    diagnostics.is_empty().then_some((found, scope))
 }

@@ -5,7 +5,7 @@
 
 use std::collections::HashMap;
 
-use super::{Model, resolve};
+use super::{Model, Named, coordinate_entries, resolve};
 use crate::diagnostics::Diagnostics;
 use crate::expr::{
     Binary, ExprId, Graph, Names, Node, Notation, Symbol, print, print_definition, print_name,
@@ -40,11 +40,15 @@ pub(crate) fn written(declaration: &Declaration) -> Vec<WrittenEquation> {
     };
     let shared = shared_names(&graph, &model);
     let symbol = |symbol| match symbol {
+        // Elements of arrays are no symbols here.
         Symbol::Parameter(field) => declaration.fields[field].name.to_string(),
         Symbol::NamedConstant(index) => model.named_constants[index].to_string().replace(' ', ""),
-        Symbol::Coordinate(index) | Symbol::Velocity(index) => model.coordinates[index].to_string(),
+        Symbol::Coordinate(entry) | Symbol::Velocity(entry) => {
+            coordinate_entries(declaration)[entry].name.to_string()
+        }
         Symbol::Time => "t".to_owned(),
         Symbol::Input(index) => model.inputs[index].to_string(),
+        Symbol::Composite(_) => unreachable!("an expression of arrays is printed by what it is made of"),
     };
     let names = Names { symbol: &symbol, shared: &shared };
     let expression = |root| Formula::new(|notation| print(&graph, root, &names, notation));
@@ -69,35 +73,34 @@ pub(crate) fn written(declaration: &Declaration) -> Vec<WrittenEquation> {
     if let Some((_, dissipation)) = model.forces.dissipation {
         equations.push(definition("D", expression(dissipation)));
     }
-    let belonging_to = |letter: (&str, &str), coordinate: usize, root| {
-        let name = model.coordinates[coordinate].to_string();
+    let belonging_to = |letter: (&str, &str), named: &Named| {
         let left = Formula {
-            unicode: format!("{}_{}", letter.0, print_name(&name, Notation::Unicode)),
-            latex: format!("{}_{{{}}}", letter.1, print_name(&name, Notation::Latex)),
+            unicode: format!("{}_{}", letter.0, print_name(&named.name, Notation::Unicode)),
+            latex: format!("{}_{{{}}}", letter.1, print_name(&named.name, Notation::Latex)),
         };
-        WrittenEquation { name: String::new(), left, right: expression(root) }
+        WrittenEquation { name: String::new(), left, right: expression(named.root) }
     };
-    for (coordinate, _, root) in &model.forces.generalized {
-        equations.push(belonging_to(("f", "f"), *coordinate, *root));
+    for (_, force) in &model.forces.generalized {
+        equations.push(belonging_to(("f", "f"), force));
     }
-    for (coordinate, root) in &model.frequencies {
-        equations.push(belonging_to(("ω", "\\omega"), *coordinate, *root));
+    for (_, frequency) in &model.frequencies {
+        equations.push(belonging_to(("ω", "\\omega"), frequency));
     }
-    for (name, root) in &model.observables {
-        equations.push(definition(&name.to_string(), expression(*root)));
+    for observed in &model.observables {
+        equations.push(definition(&observed.name, expression(observed.root)));
     }
-    for definition_of in &model.source.lets {
-        if shared.get(&definition_of.root).is_some_and(|name| definition_of.name == name) {
-            let root = definition_of.root;
+    for definition_of in &model.lets {
+        let Some(root) = definition_of.root else { continue };
+        if shared.get(&root).is_some_and(|name| definition_of.name == name) {
             let right = Formula::new(|notation| print_definition(&graph, root, &names, notation));
             equations.push(definition(&definition_of.name.to_string(), right));
         }
     }
-    for (name, residual) in &model.constraints {
-        let Node::Binary(Binary::Sub, left, right) = graph.node(*residual) else {
+    for constraint in &model.constraints {
+        let Node::Binary(Binary::Sub, left, right) = graph.node(constraint.root) else {
             unreachable!("the residual of a constraint is LHS − RHS");
         };
-        let name = name.to_string();
+        let name = constraint.name.clone();
         equations.push(WrittenEquation { name, left: expression(left), right: expression(right) });
     }
     equations
@@ -108,18 +111,23 @@ pub(crate) fn written(declaration: &Declaration) -> Vec<WrittenEquation> {
 fn shared_names(graph: &Graph, model: &Model) -> HashMap<ExprId, String> {
     let energies = model.energies.iter().map(|energy| energy.root);
     let roots: Vec<ExprId> = energies
-        .chain(model.constraints.iter().map(|(_, root)| *root))
+        .chain(model.constraints.iter().map(|constraint| constraint.root))
         .chain(model.forces.dissipation.iter().map(|(_, root)| *root))
-        .chain(model.forces.generalized.iter().map(|(_, _, root)| *root))
-        .chain(model.frequencies.iter().map(|(_, root)| *root))
-        .chain(model.observables.iter().map(|(_, root)| *root))
+        .chain(model.forces.generalized.iter().map(|(_, force)| force.root))
+        .chain(model.frequencies.iter().map(|(_, frequency)| frequency.root))
+        .chain(model.observables.iter().map(|observed| observed.root))
         .collect();
-    let used = graph.reachable(&roots, |_| false);
+    let used = graph.reachable_in_loops(&roots);
     let mut shared = HashMap::new();
-    for definition in &model.source.lets {
-        let is_expression = !matches!(graph.node(definition.root), Node::Number(_) | Node::Symbol(_));
-        if is_expression && used.binary_search(&definition.root).is_ok() {
-            shared.entry(definition.root).or_insert_with(|| definition.name.to_string());
+    for definition in &model.lets {
+        let Some(root) = definition.root else { continue };
+        let is_expression = match graph.node(root) {
+            Node::Symbol(Symbol::Composite(_)) => !graph.is_element(root),
+            Node::Number(_) | Node::Symbol(_) => false,
+            Node::Unary(..) | Node::Binary(..) | Node::Power(..) => true,
+        };
+        if is_expression && used.contains(&root) {
+            shared.entry(root).or_insert_with(|| definition.name.to_string());
         }
     }
     shared

@@ -16,7 +16,7 @@ pub(crate) use elimination::Elimination;
 use crate::diagnostics::Diagnostics;
 use crate::expr::{Dependence, ExprId, Graph};
 use crate::mechanics::{Equations, Partial};
-use crate::model::Model;
+use crate::model::{Model, Named};
 
 /// The sparsity of a system.
 pub(crate) struct Structure {
@@ -54,11 +54,11 @@ impl Structure {
     /// Reports constraints without a gradient: of what they contain, nothing is left.
     pub(crate) fn check_gradients(&self, model: &Model, diagnostics: &mut Diagnostics) {
         let each = &self.classification.each_constraint;
-        for ((name, _), constraint) in model.constraints.iter().zip(each) {
+        for (Named { name, span, .. }, constraint) in model.constraints.iter().zip(each) {
             if constraint.gradient == Block::Zero {
                 let message =
                     format!("constraint `{name}` constrains nothing: no coordinate is left in `LHS - RHS`");
-                diagnostics.report(name.span(), message);
+                diagnostics.report(*span, message);
             }
         }
     }

@@ -5,7 +5,10 @@ use quote::ToTokens;
 
 use super::item::{Item, parse_items};
 use super::nesting;
+use super::rigid_body::spell_out;
+use super::shape::shape_of_type;
 use crate::diagnostics::Diagnostics;
+use crate::expr::Affine;
 
 /// A struct with its attribute.
 pub(crate) struct Declaration {
@@ -29,7 +32,8 @@ pub(crate) struct Generics {
 /// A named field.
 pub(crate) struct Field {
     pub(crate) name: Ident,
-    pub(crate) is_f64: bool,
+    /// The sizes of an array, none for one number; `None` for a field of another type.
+    pub(crate) shape: Option<Vec<Affine>>,
 }
 
 /// The derive stands on something that Rust itself will complain about.
@@ -93,8 +97,7 @@ fn field(field: &syn::Field, diagnostics: &mut Diagnostics) -> Field {
         diagnostics.report(span, "#[evi(..)] stands above the struct: a field is a parameter without it");
     }
     let name = field.ident.clone().expect("the fields of a struct with named fields have names");
-    let is_f64 = matches!(&field.ty, syn::Type::Path(path) if path.path.is_ident("f64"));
-    Field { name, is_f64 }
+    Field { name, shape: shape_of_type(&field.ty) }
 }
 
 fn attribute_items(input: &syn::DeriveInput, diagnostics: &mut Diagnostics) -> Vec<Item> {
@@ -125,7 +128,7 @@ fn attribute_items(input: &syn::DeriveInput, diagnostics: &mut Diagnostics) -> V
             "the attribute is empty: write #[evi(coordinates(..), kinetic = .., potential = ..)]",
         );
     }
-    items
+    spell_out(items, diagnostics)
 }
 
 fn first_span(tokens: TokenStream, otherwise: Span) -> Span {

@@ -1,18 +1,13 @@
-//! The expression language: from a Rust expression to a node of the graph.
+//! Expressions as they are parsed, what they are asked for, and whom they ask about names. How they become nodes of the graph is `lowering`.
 
 use std::rc::Rc;
 
 use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
-use quote::ToTokens;
 use syn::parse::{ParseStream, Parser};
-use syn::spanned::Spanned;
 
-use super::integers::{
-    integer_division_message, integer_literal, is_integer, is_integer_literal, power_message,
-};
-use super::spine::{Tree, first_span, last_span, left_operand};
-use crate::diagnostics::{Diagnostics, suggestion};
-use crate::expr::{Binary, ExprId, Graph, Unary};
+use super::spine::{Tree, first_span, last_span};
+use crate::diagnostics::Diagnostics;
+use crate::expr::{Affine, ExprId, Graph, Value, View};
 
 /// An expression as the user wrote it.
 #[derive(Clone)]
@@ -22,22 +17,46 @@ pub(crate) struct Expression {
     pub(crate) tokens: TokenStream,
 }
 
+/// How sums and families become equations.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Expansion {
+    /// Term by term: sizes are literals, and small.
+    Unrolled,
+    /// As loops over one element.
+    Looped,
+    /// As they are written, to be printed.
+    Written,
+}
+
 /// What names mean; knows the scope that an expression stands in.
 pub(crate) trait Resolver {
-    /// The node of a name, or `None` for a name that is unknown.
+    fn expansion(&self) -> Expansion;
+    /// The value of a name, or `None` for a name that is unknown.
     fn name(&mut self, graph: &mut Graph, name: &Ident, diagnostics: &mut Diagnostics) -> Resolved;
-    /// The node of `der(name)`; reports what is wrong with it.
+    /// The value of `der(name)`; reports what is wrong with it.
     fn velocity(
         &mut self,
         graph: &mut Graph,
         der: Span,
         name: &Ident,
         diagnostics: &mut Diagnostics,
-    ) -> Option<ExprId>;
+    ) -> Option<Value>;
+    /// The node of an element of an array.
+    fn element(&mut self, graph: &mut Graph, view: &View) -> ExprId;
+    /// The node of an index that stands where a number does.
+    fn index_as_number(&mut self, graph: &mut Graph, index: &Affine) -> ExprId;
+    /// Leaves to rustc whether an index that is not known here is below `size`.
+    fn check_bounds(&mut self, index: &Affine, size: &Affine, array: &str, first: Span, last: Span);
+    /// Opens an index that goes through a range; returns its level and what it is worth.
+    fn enter_index(&mut self, name: &Ident, from: &Affine, to: &Affine) -> (usize, Affine);
+    /// Closes the innermost index.
+    fn leave_index(&mut self);
+    /// Says where a sum that stays a loop is written.
+    fn place_of_sum(&mut self, sum: ExprId, place: Span);
     /// The node of a constant that rustc resolves.
     fn constant(&mut self, graph: &mut Graph, path: TokenStream) -> ExprId;
     /// Gives a name to the value of a `let` in a block, until the block ends.
-    fn define(&mut self, name: &Ident, value: Option<ExprId>, diagnostics: &mut Diagnostics);
+    fn define(&mut self, name: &Ident, value: Option<Value>, diagnostics: &mut Diagnostics);
     /// Opens a block.
     fn enter_block(&mut self);
     /// Closes the innermost block.
@@ -48,13 +67,38 @@ pub(crate) trait Resolver {
 
 /// What a name stands for.
 pub(crate) enum Resolved {
-    Value(ExprId),
+    Value(Value),
     /// Known, but its definition or its use here is wrong and has been reported.
     Mistaken,
     Unknown,
 }
 
 impl Expression {
+    pub(super) fn root(&self) -> &syn::Expr {
+        self.syntax.root()
+    }
+
+    /// Whether it is this number as a literal.
+    pub(super) fn is_number(&self, number: f64) -> bool {
+        matches!(self.root(), syn::Expr::Lit(syn::ExprLit { lit: syn::Lit::Float(literal), .. })
+            if literal.base10_parse::<f64>().is_ok_and(|value| value == number))
+    }
+
+    /// Whether it has neither vectors nor indices.
+    pub(crate) fn is_of_numbers(&self) -> bool {
+        !has_vectors(&self.tokens)
+    }
+
+    /// The span of the first token.
+    pub(crate) fn first_span(&self) -> Span {
+        first_span(self.syntax.root())
+    }
+
+    /// The span of the last token.
+    pub(crate) fn last_span(&self) -> Span {
+        last_span(self.syntax.root())
+    }
+
     /// Parses the tokens behind the token at `before`.
     pub(crate) fn parse(tokens: TokenStream, before: Span, diagnostics: &mut Diagnostics) -> Option<Self> {
         let Some(last) = tokens.clone().into_iter().last() else {
@@ -84,355 +128,53 @@ impl Expression {
     }
 }
 
-/// Builds the node of an expression; `None` where mistakes were reported.
+/// Builds the value of an expression, its elements known; `None` where mistakes were reported.
 pub(crate) fn lower(
     expression: &Expression,
     graph: &mut Graph,
     resolver: &mut impl Resolver,
     diagnostics: &mut Diagnostics,
-) -> Option<ExprId> {
-    Lowering { graph, resolver, diagnostics }.value(expression.syntax.root())
-}
-
-struct Lowering<'a, R> {
-    graph: &'a mut Graph,
-    resolver: &'a mut R,
-    diagnostics: &'a mut Diagnostics,
-}
-
-impl<R: Resolver> Lowering<'_, R> {
-    /// Recurses into what parentheses hold, whose depth is bounded; not along sums, products and chains of methods.
-    fn value(&mut self, expression: &syn::Expr) -> Option<ExprId> {
-        let mut spine = vec![expression];
-        while let Some(left) = left_operand(spine[spine.len() - 1]) {
-            spine.push(left);
-        }
-        let innermost = spine.pop().expect("the expression itself, if nothing else");
-        let value = self.innermost(innermost);
-        spine.into_iter().rev().fold(value, |value, outer| self.applied(outer, value))
-    }
-
-    /// The node of an expression without an operand on its left.
-    fn innermost(&mut self, expression: &syn::Expr) -> Option<ExprId> {
-        match expression {
-            syn::Expr::Lit(literal) => self.literal(&literal.lit),
-            syn::Expr::Path(path) if path.qself.is_none() => self.path(path),
-            syn::Expr::Call(call) => self.call(call),
-            syn::Expr::Block(block) if block.label.is_none() => self.block(&block.block),
-            syn::Expr::Field(field) => {
-                let member = field.member.to_token_stream();
-                self.mistake_over(field, format!("a field is named directly, write `{member}`"))
-            }
-            syn::Expr::Array(array) => {
-                self.mistake_over(array, "a vector where a number is expected: coordinates are scalars")
-            }
-            syn::Expr::If(choice) => self.mistake(
-                choice.if_token.span,
-                "an equation has no `if`: it is differentiated twice, and a smooth formula is needed",
-            ),
-            syn::Expr::Assign(assign) => {
-                self.mistake(assign.eq_token.span, "`=` in an equation: shared expressions are written `let`")
-            }
-            other => self.mistake_over(
-                other,
-                "an equation is made of numbers, names, `der(..)`, `+ - * /`, methods such as `.sin()`, and \
-                 blocks with `let`",
-            ),
-        }
-    }
-
-    /// The node of an expression whose left operand has this value.
-    fn applied(&mut self, expression: &syn::Expr, left: Option<ExprId>) -> Option<ExprId> {
-        match expression {
-            syn::Expr::Binary(binary) => self.binary(binary, left),
-            syn::Expr::MethodCall(call) => self.method(call, left),
-            syn::Expr::Unary(unary) => self.unary(unary, left),
-            syn::Expr::Field(field) => self.field(field),
-            syn::Expr::Index(index) => {
-                left?;
-                self.mistake_between(
-                    first_span(&index.expr),
-                    index.bracket_token.span.close(),
-                    "nothing here has an index: coordinates are scalars",
-                )
-            }
-            syn::Expr::Cast(cast) => {
-                self.mistake(cast.as_token.span, "no cast is needed: every value is a real number")
-            }
-            // Parentheses.
-            _ => left,
-        }
-    }
-
-    fn mistake(&mut self, span: Span, message: impl Into<String>) -> Option<ExprId> {
-        self.diagnostics.report(span, message);
-        None
-    }
-
-    fn mistake_between(&mut self, first: Span, last: Span, message: impl Into<String>) -> Option<ExprId> {
-        self.diagnostics.report_range(first, last, message);
-        None
-    }
-
-    /// A mistake that the whole of `syntax` is.
-    fn mistake_over(&mut self, syntax: &impl ToTokens, message: impl Into<String>) -> Option<ExprId> {
-        let tokens: Vec<TokenTree> = syntax.to_token_stream().into_iter().collect();
-        let (first, last) = (tokens.first().expect("syntax has tokens"), tokens.last().expect("as above"));
-        self.mistake_between(first.span(), last.span(), message)
-    }
-
-    fn field(&mut self, field: &syn::ExprField) -> Option<ExprId> {
-        let member = field.member.to_token_stream().to_string();
-        if is_function(&member) {
-            return self
-                .mistake(field.member.span(), format!("`.{member}` is a function, write `.{member}(..)`"));
-        }
-        self.mistake(field.member.span(), "a number has no fields")
-    }
-
-    fn literal(&mut self, literal: &syn::Lit) -> Option<ExprId> {
-        let (digits, suffix) = match literal {
-            syn::Lit::Float(float) => (float.base10_digits().to_owned(), float.suffix().to_owned()),
-            syn::Lit::Int(integer) => (integer.base10_digits().to_owned(), integer.suffix().to_owned()),
-            other => return self.mistake(other.span(), "expected a number"),
-        };
-        if !matches!(suffix.as_str(), "" | "f64") {
-            return self
-                .mistake(literal.span(), format!("every value is a real number: leave out `{suffix}`"));
-        }
-        match digits.parse::<f64>() {
-            Ok(value) if value.is_finite() => Some(self.graph.number(value)),
-            _ => self.mistake(literal.span(), "this number is too large for f64"),
-        }
-    }
-
-    fn path(&mut self, path: &syn::ExprPath) -> Option<ExprId> {
-        let Some(name) = path.path.get_ident() else {
-            return Some(self.resolver.constant(self.graph, quote::ToTokens::to_token_stream(path)));
-        };
-        match self.resolver.name(self.graph, name, self.diagnostics) {
-            Resolved::Value(value) => Some(value),
-            Resolved::Mistaken => None,
-            Resolved::Unknown if is_screaming_case(name) => {
-                Some(self.resolver.constant(self.graph, quote::ToTokens::to_token_stream(path)))
-            }
-            Resolved::Unknown if name == "der" => self.mistake(name.span(), DER_TAKES_ONE),
-            Resolved::Unknown => {
-                self.resolver.report_unknown(name, self.diagnostics);
-                None
-            }
-        }
-    }
-
-    fn unary(&mut self, unary: &syn::ExprUnary, operand: Option<ExprId>) -> Option<ExprId> {
-        match unary.op {
-            syn::UnOp::Neg(_) => operand.map(|operand| self.graph.neg(operand)),
-            _ => self.mistake_over(&unary.op, "this operator has no meaning for real numbers"),
-        }
-    }
-
-    fn binary(&mut self, binary: &syn::ExprBinary, first: Option<ExprId>) -> Option<ExprId> {
-        // `x ** 2` parses as `x * (*2)`.
-        if let (
-            syn::BinOp::Mul(first),
-            syn::Expr::Unary(syn::ExprUnary { op: syn::UnOp::Deref(second), expr, .. }),
-        ) = (binary.op, &*binary.right)
-        {
-            self.value(expr);
-            self.diagnostics.report_range(first.span, second.span, power_message("**", expr));
-            return None;
-        }
-        // Whatever the first is, so that the mistakes of both are reported.
-        let second = self.value(&binary.right);
-        let operator = match binary.op {
-            syn::BinOp::Add(_) => Binary::Add,
-            syn::BinOp::Sub(_) => Binary::Sub,
-            syn::BinOp::Mul(_) => Binary::Mul,
-            syn::BinOp::Div(_) if is_integer(&binary.left) && is_integer(&binary.right) => {
-                let message = integer_division_message(&binary.left, &binary.right);
-                return self.mistake_between(first_span(&binary.left), last_span(&binary.right), message);
-            }
-            syn::BinOp::Div(_) => Binary::Div,
-            syn::BinOp::BitXor(caret) => {
-                return self.mistake(caret.span, power_message("^", &binary.right));
-            }
-            other => {
-                return self
-                    .mistake_over(&other, "this operator has no meaning in an equation: use `+ - * /`");
-            }
-        };
-        Some(self.graph.binary(operator, first?, second?))
-    }
-
-    fn method(&mut self, call: &syn::ExprMethodCall, receiver: Option<ExprId>) -> Option<ExprId> {
-        let method = call.method.to_string();
-        let arguments: Vec<&syn::Expr> = call.args.iter().collect();
-        match (method.as_str(), arguments.as_slice()) {
-            ("powi", [exponent]) => match integer_literal(exponent) {
-                Some(exponent) => receiver.map(|base| self.graph.power(base, exponent)),
-                None if is_integer_literal(exponent) => self.mistake_over(
-                    exponent,
-                    "an exponent of `.powi` is between -2147483647 and 2147483647; for others write `.powf(..)`",
-                ),
-                None => self.mistake_over(
-                    exponent,
-                    "`.powi` takes an integer literal; for other exponents write `.powf(..)`",
-                ),
-            },
-            ("powf", [exponent]) => {
-                let exponent = self.value(exponent);
-                Some(self.graph.binary(Binary::Powf, receiver?, exponent?))
-            }
-            ("atan2", [x]) => {
-                let x = self.value(x);
-                Some(self.graph.binary(Binary::Atan2, receiver?, x?))
-            }
-            ("powi" | "powf" | "atan2", _) => {
-                self.mistake(call.method.span(), format!("`.{method}` takes one argument"))
-            }
-            (_, arguments) => match (Unary::from_method(&method), arguments) {
-                (Some(function), []) => receiver.map(|operand| self.graph.unary(function, operand)),
-                (Some(_), [extra, ..]) => {
-                    self.mistake_over(extra, format!("`.{method}()` takes no argument"))
-                }
-                (None, _) if is_function_of_vectors(&method) => {
-                    receiver?;
-                    self.mistake(
-                        call.method.span(),
-                        format!("`.{method}` is a function of vectors: coordinates are scalars"),
-                    )
-                }
-                (None, _) => {
-                    let known: Vec<&str> = functions().collect();
-                    let similar = suggestion(&method, functions());
-                    let message =
-                        format!("unknown function `{method}`{similar}\nfunctions: {}", known.join(", "));
-                    self.mistake(call.method.span(), message)
-                }
-            },
-        }
-    }
-
-    fn call(&mut self, call: &syn::ExprCall) -> Option<ExprId> {
-        let function = match &*call.func {
-            syn::Expr::Path(path) => path.path.segments.last().map(|segment| &segment.ident),
-            _ => None,
-        };
-        let arguments: Vec<&syn::Expr> = call.args.iter().collect();
-        match (function, arguments.as_slice()) {
-            (Some(der), [argument]) if der == "der" => self.derivative(der.span(), argument),
-            (Some(der), _) if der == "der" => self.mistake(der.span(), DER_TAKES_ONE),
-            (Some(name), [receiver, others @ ..]) if name == "pow" || is_function(&name.to_string()) => {
-                for argument in &arguments {
-                    self.value(argument);
-                }
-                let receiver = match receiver {
-                    syn::Expr::Path(_) | syn::Expr::Call(_) => receiver.to_token_stream().to_string(),
-                    _ => "(..)".to_owned(),
-                };
-                let name = if name == "pow" { "powi".to_owned() } else { name.to_string() };
-                let others = if others.is_empty() { "" } else { ".." };
-                self.mistake_over(
-                    &call.func,
-                    format!("functions are methods in Rust, write `{receiver}.{name}({others})`"),
-                )
-            }
-            _ => self
-                .mistake_over(&call.func, "the only function that can be called here is `der(coordinate)`"),
-        }
-    }
-
-    fn derivative(&mut self, der: Span, argument: &syn::Expr) -> Option<ExprId> {
-        match argument {
-            syn::Expr::Path(path) if path.path.get_ident().is_some() => {
-                let name = path.path.get_ident().expect("checked by the guard");
-                self.resolver.velocity(self.graph, der, name, self.diagnostics)
-            }
-            syn::Expr::Paren(inner) => self.derivative(der, &inner.expr),
-            syn::Expr::Index(index) => {
-                self.derivative(der, &index.expr)?;
-                self.mistake_over(index, "nothing here has an index: coordinates are scalars")
-            }
-            syn::Expr::Call(_) => {
-                self.mistake(der, "a Lagrangian depends on positions and velocities: no second derivatives")
-            }
-            other => self.mistake_over(other, "`der` takes a coordinate by its name: `der(x)`"),
-        }
-    }
-
-    fn block(&mut self, block: &syn::Block) -> Option<ExprId> {
-        self.resolver.enter_block();
-        let mut value = None;
-        for (k, statement) in block.stmts.iter().enumerate() {
-            match statement {
-                syn::Stmt::Local(local) => self.local(local),
-                syn::Stmt::Expr(last, None) if k + 1 == block.stmts.len() => value = self.value(last),
-                other => {
-                    self.mistake_over(
-                        other,
-                        "a block holds `let name = expression;` and ends with an expression",
-                    );
-                }
-            }
-        }
-        if !matches!(block.stmts.last(), Some(syn::Stmt::Expr(_, None))) {
-            self.mistake(block.brace_token.span.close(), "a block ends with an expression, its value");
-        }
-        self.resolver.leave_block();
-        value
-    }
-
-    fn local(&mut self, local: &syn::Local) {
-        let name = match &local.pat {
-            syn::Pat::Ident(name)
-                if name.by_ref.is_none() && name.mutability.is_none() && name.subpat.is_none() =>
-            {
-                name.ident.clone()
-            }
-            other => {
-                self.mistake_over(other, "write `let name = expression;`");
-                // What it binds is known, if not its value.
-                for name in identifiers(other.to_token_stream()) {
-                    self.resolver.define(&name, None, self.diagnostics);
-                }
-                return;
-            }
-        };
-        let value = match &local.init {
-            Some(init) if init.diverge.is_none() => self.value(&init.expr),
-            _ => self.mistake(name.span(), "write `let name = expression;`"),
-        };
-        self.resolver.define(&name, value, self.diagnostics);
+) -> Option<Value> {
+    let mut lowering = Lowering { graph, resolver, diagnostics };
+    let root = expression.syntax.root();
+    let value = lowering.value(root)?;
+    match lowering.known(value) {
+        Ok(value) => Some(value),
+        Err(message) => lowering.mistake_between(first_span(root), last_span(root), message),
     }
 }
 
-/// For every wrong number of arguments, none included.
-const DER_TAKES_ONE: &str = "`der` takes one coordinate: `der(x)`";
-
-/// The functions of the attribute grammar.
-fn functions() -> impl Iterator<Item = &'static str> {
-    Unary::methods().chain(["powi", "powf", "atan2"])
+/// The ends of the range that an expression is; `None` where mistakes were reported.
+pub(crate) fn lower_range(
+    expression: &Expression,
+    graph: &mut Graph,
+    resolver: &mut impl Resolver,
+    diagnostics: &mut Diagnostics,
+) -> Option<(Affine, Affine)> {
+    Lowering { graph, resolver, diagnostics }.range(expression.syntax.root())
 }
 
-fn is_function(name: &str) -> bool {
-    functions().any(|function| function == name)
+/// The index that an expression is; `None` where mistakes were reported.
+pub(crate) fn lower_index(
+    expression: &Expression,
+    graph: &mut Graph,
+    resolver: &mut impl Resolver,
+    diagnostics: &mut Diagnostics,
+) -> Option<Affine> {
+    Lowering { graph, resolver, diagnostics }.index(expression.syntax.root())
 }
 
-fn is_function_of_vectors(name: &str) -> bool {
-    matches!(name, "dot" | "cross" | "norm" | "norm_squared")
+pub(super) struct Lowering<'a, R> {
+    pub(super) graph: &'a mut Graph,
+    pub(super) resolver: &'a mut R,
+    pub(super) diagnostics: &'a mut Diagnostics,
 }
 
-fn identifiers(tokens: TokenStream) -> Vec<Ident> {
-    let inside = |token| match token {
-        TokenTree::Ident(name) => vec![name],
-        TokenTree::Group(group) => identifiers(group.stream()),
-        TokenTree::Punct(_) | TokenTree::Literal(_) => Vec::new(),
-    };
-    tokens.into_iter().flat_map(inside).collect()
-}
-
-/// Rust's convention for constants.
-fn is_screaming_case(name: &Ident) -> bool {
-    let name = name.to_string();
-    name.chars().any(char::is_alphabetic) && !name.chars().any(char::is_lowercase)
+/// Whether there are brackets or sums.
+fn has_vectors(tokens: &TokenStream) -> bool {
+    tokens.clone().into_iter().any(|token| match token {
+        TokenTree::Group(group) => group.delimiter() == Delimiter::Bracket || has_vectors(&group.stream()),
+        TokenTree::Ident(name) => name == "sum",
+        TokenTree::Punct(_) | TokenTree::Literal(_) => false,
+    })
 }

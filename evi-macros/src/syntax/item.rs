@@ -5,7 +5,10 @@
 use proc_macro2::{Delimiter, Group, Ident, Punct, Spacing, Span, TokenStream, TokenTree};
 
 use super::expression::Expression;
+use super::indexed::{Bracket, Indexed, brackets, leading_brackets};
 use super::labelled::{Form, Labelled, NameList, labelled, name_list};
+use super::rigid_body::{ItemOrBody, rigid_body};
+use super::shape::{Coordinate, array_of_coordinates};
 use crate::diagnostics::{Diagnostics, closest, suggestion};
 
 /// One item of the attribute. A value is missing where it did not parse.
@@ -42,17 +45,17 @@ pub(crate) enum Item {
     Unknown,
 }
 
-/// `coordinates(x, y)`
+/// `coordinates(x, y)`, `coordinates(r: [3], p: [N, 2])`
 pub(crate) struct Coordinates {
     pub(crate) keyword: Ident,
-    pub(crate) names: Vec<Ident>,
-    /// Whether every entry is a name.
+    pub(crate) entries: Vec<Coordinate>,
+    /// Whether every entry is known.
     pub(crate) is_complete: bool,
 }
 
-/// `constraint(NAME: LHS == RHS)`; name and sides are missing where they did not parse.
+/// `constraint(NAME: LHS == RHS)`, `constraint(NAME[i in 0..N]: LHS == RHS)`; name and sides are missing where they did not parse.
 pub(crate) struct Constraint {
-    pub(crate) name: Option<Ident>,
+    pub(crate) name: Option<Indexed>,
     pub(crate) left: Option<Expression>,
     pub(crate) right: Option<Expression>,
 }
@@ -64,7 +67,7 @@ pub(crate) struct Let {
 }
 
 /// The items, as the user writes them.
-const KEYWORDS: [&str; 11] = [
+const KEYWORDS: [&str; 12] = [
     "coordinates",
     "lagrangian",
     "kinetic",
@@ -75,6 +78,7 @@ const KEYWORDS: [&str; 11] = [
     "input",
     "frequency",
     "observe",
+    "rigid_body",
     "let",
 ];
 
@@ -98,7 +102,7 @@ const OBSERVE: Form = Form {
 };
 
 /// Parses the items between the parentheses of an attribute.
-pub(super) fn parse_items(tokens: TokenStream, diagnostics: &mut Diagnostics) -> Vec<Item> {
+pub(super) fn parse_items(tokens: TokenStream, diagnostics: &mut Diagnostics) -> Vec<ItemOrBody> {
     let mut items = Vec::new();
     for between_commas in split_at_commas(tokens) {
         let mut rest = between_commas.as_slice();
@@ -109,7 +113,14 @@ pub(super) fn parse_items(tokens: TokenStream, diagnostics: &mut Diagnostics) ->
                 diagnostics.report(rest[next].span(), message);
             }
             let (item, behind) = rest.split_at(next.unwrap_or(rest.len()));
-            items.extend(parse_item(item, diagnostics));
+            let is_body = matches!(item.first(), Some(TokenTree::Ident(keyword)) if keyword == "rigid_body");
+            match (is_body, item) {
+                (true, [TokenTree::Ident(keyword), rest @ ..]) => {
+                    let body = rigid_body(keyword, rest, diagnostics);
+                    items.push(body.map_or(ItemOrBody::Item(Item::Unknown), ItemOrBody::Body));
+                }
+                _ => items.extend(parse_item(item, diagnostics).map(ItemOrBody::Item)),
+            }
             rest = behind;
         }
     }
@@ -134,7 +145,7 @@ fn begins_item(before: &[TokenTree], tokens: &[TokenTree]) -> bool {
     let is_named = matches!(before.last(), Some(TokenTree::Ident(previous)) if previous == "let");
     match tokens {
         [TokenTree::Ident(keyword), TokenTree::Group(_), ..] => {
-            let lists = ["coordinates", "constraint", "force", "input", "frequency", "observe"];
+            let lists = ["coordinates", "constraint", "force", "input", "frequency", "observe", "rigid_body"];
             lists.iter().any(|list| keyword == list)
         }
         [TokenTree::Ident(keyword), TokenTree::Punct(equals), rest @ ..] => {
@@ -235,32 +246,34 @@ fn assigned(
 
 fn coordinates(keyword: Ident, rest: &[TokenTree], diagnostics: &mut Diagnostics) -> Coordinates {
     let Some(group) = parenthesized(&keyword, "coordinates(x, y, ..)", rest, diagnostics) else {
-        return Coordinates { keyword, names: Vec::new(), is_complete: false };
+        return Coordinates { keyword, entries: Vec::new(), is_complete: false };
     };
-    let mut names = Vec::new();
+    let mut entries = Vec::new();
     let mut is_complete = true;
+    let scalar = |name| Coordinate { name, shape: Vec::new() };
     for entry in split_at_commas(group.stream()) {
         match entry.as_slice() {
-            [TokenTree::Ident(name), TokenTree::Punct(colon), TokenTree::Group(_), ..]
-                if colon.as_char() == ':' =>
+            [TokenTree::Ident(name), TokenTree::Punct(colon), sizes @ ..]
+                if colon.as_char() == ':' && matches!(sizes.first(), Some(TokenTree::Group(_))) =>
             {
-                let message =
-                    format!("coordinates are scalars: write `{name}1, {name}2, ..` for a vector `{name}`");
-                diagnostics.report(name.span(), message);
-                is_complete = false;
+                let shape = array_of_coordinates(name, sizes, diagnostics);
+                is_complete &= shape.is_some();
+                let name = identifier(name, diagnostics);
+                entries.extend(name.zip(shape).map(|(name, shape)| Coordinate { name, shape }));
             }
             [TokenTree::Ident(name), TokenTree::Punct(colon), ..] if colon.as_char() == ':' => {
-                let message = format!("a coordinate has no type, write `{name}`");
+                let message =
+                    format!("a coordinate has no type, write `{name}`, or `{name}: [3]` for a vector");
                 diagnostics.report(colon.span(), message);
-                names.extend(identifier(name, diagnostics));
+                entries.extend(identifier(name, diagnostics).map(scalar));
             }
             [TokenTree::Ident(first), others @ ..] => {
-                names.extend(identifier(first, diagnostics));
+                entries.extend(identifier(first, diagnostics).map(scalar));
                 for other in others {
                     match other {
                         TokenTree::Ident(name) => {
                             diagnostics.report(name.span(), format!("a comma is missing before `{name}`"));
-                            names.extend(identifier(name, diagnostics));
+                            entries.extend(identifier(name, diagnostics).map(scalar));
                         }
                         other => {
                             diagnostics.report(other.span(), "a coordinate is a name");
@@ -276,7 +289,7 @@ fn coordinates(keyword: Ident, rest: &[TokenTree], diagnostics: &mut Diagnostics
             }
         }
     }
-    Coordinates { keyword, names, is_complete }
+    Coordinates { keyword, entries, is_complete }
 }
 
 /// A name that Rust accepts for a variable.
@@ -293,21 +306,14 @@ fn constraint(keyword: &Ident, rest: &[TokenTree], diagnostics: &mut Diagnostics
         return Constraint { name: None, left: None, right: None };
     };
     let tokens: Vec<TokenTree> = group.stream().into_iter().collect();
-    match tokens.as_slice() {
-        [TokenTree::Ident(name), TokenTree::Punct(colon), equation @ ..]
+    let brackets = leading_brackets(tokens.get(1..).unwrap_or_default());
+    match (tokens.first(), tokens.get(1 + brackets.len()..)) {
+        (Some(TokenTree::Ident(name)), Some([TokenTree::Punct(colon), equation @ ..]))
             if colon.as_char() == ':' && !is_punct(equation.first(), ':') && name != "_" =>
         {
+            let indexed = family(name, &brackets, diagnostics);
             let (left, right) = equation_sides(name, equation, diagnostics);
-            Constraint { name: Some(name.clone()), left, right }
-        }
-        [TokenTree::Ident(name), TokenTree::Group(indices), ..]
-            if indices.delimiter() == Delimiter::Bracket =>
-        {
-            let message = format!(
-                "`{name}` is a family of constraints, but coordinates are scalars: write one constraint each"
-            );
-            diagnostics.report(indices.span(), message);
-            Constraint { name: Some(name.clone()), left: None, right: None }
+            Constraint { name: Some(indexed), left, right }
         }
         _ => {
             let span = tokens.first().map_or(keyword.span(), TokenTree::span);
@@ -315,6 +321,19 @@ fn constraint(keyword: &Ident, rest: &[TokenTree], diagnostics: &mut Diagnostics
             Constraint { name: None, left: None, right: None }
         }
     }
+}
+
+/// A name of which each pair of brackets holds ranges.
+fn family(name: &Ident, groups: &[Group], diagnostics: &mut Diagnostics) -> Indexed {
+    let mut indexed = brackets(name, groups, diagnostics);
+    for bracket in &indexed.brackets {
+        if let Bracket::At(index) = bracket {
+            let message = format!("a family of constraints names its range: `{name}[i in 0..N]`");
+            diagnostics.report_range(index.first_span(), index.last_span(), message);
+        }
+    }
+    indexed.brackets.retain(|bracket| matches!(bracket, Bracket::Each(_)));
+    indexed
 }
 
 /// Splits an equation at its only `==` outside of groups. What stands for it by mistake splits, too, for the

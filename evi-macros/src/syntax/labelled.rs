@@ -6,12 +6,13 @@
 use proc_macro2::{Ident, Spacing, TokenTree};
 
 use super::expression::Expression;
+use super::indexed::{Indexed, brackets, leading_brackets};
 use super::item::{identifier, parenthesized, split_at_commas};
 use crate::diagnostics::Diagnostics;
 
-/// `keyword(NAME, ..: EXPR)`; names and value are missing where they did not parse.
+/// `keyword(NAME, ..: EXPR)`, with brackets behind names; names and value are missing where they did not parse.
 pub(crate) struct Labelled {
-    pub(crate) names: Vec<Ident>,
+    pub(crate) names: Vec<Indexed>,
     pub(crate) value: Option<Expression>,
 }
 
@@ -73,26 +74,31 @@ pub(super) fn name_list(
     if tokens.is_empty() {
         diagnostics.report(keyword.span(), format!("write `{example}`"));
     }
-    NameList { names: names(&tokens, "an input", diagnostics) }
+    let names = names(&tokens, "an input", diagnostics);
+    for indexed in names.iter().filter(|indexed| !indexed.brackets.is_empty()) {
+        let message = format!("an input is a number: write `{0}0, {0}1, ..`", indexed.name);
+        diagnostics.report(indexed.span(), message);
+    }
+    NameList { names: names.into_iter().map(|indexed| indexed.name).collect() }
 }
 
-/// Names between commas.
-fn names(tokens: &[TokenTree], what: &str, diagnostics: &mut Diagnostics) -> Vec<Ident> {
+/// Names between commas, each with its brackets.
+fn names(tokens: &[TokenTree], what: &str, diagnostics: &mut Diagnostics) -> Vec<Indexed> {
     let mut names = Vec::new();
     for entry in split_at_commas(tokens.iter().cloned().collect()) {
-        for (position, token) in entry.iter().enumerate() {
-            match token {
-                TokenTree::Ident(name) => {
-                    if position > 0 {
-                        diagnostics.report(name.span(), format!("a comma is missing before `{name}`"));
-                    }
-                    names.extend(identifier(name, diagnostics));
-                }
-                other => {
-                    diagnostics.report(other.span(), format!("{what} is a name"));
-                    break;
-                }
+        let mut rest = entry.as_slice();
+        while let Some((token, behind)) = rest.split_first() {
+            let TokenTree::Ident(name) = token else {
+                diagnostics.report(token.span(), format!("{what} is a name"));
+                break;
+            };
+            if rest.len() < entry.len() {
+                diagnostics.report(name.span(), format!("a comma is missing before `{name}`"));
             }
+            let groups = leading_brackets(behind);
+            let name = identifier(name, diagnostics);
+            names.extend(name.map(|name| brackets(&name, &groups, diagnostics)));
+            rest = &behind[groups.len()..];
         }
     }
     names

@@ -84,7 +84,12 @@ impl Drop for Tree {
                 Expr::Unary(unary) => pending.push(*unary.expr),
                 Expr::Paren(parentheses) => pending.push(*parentheses.expr),
                 Expr::Group(group) => pending.push(*group.expr),
-                Expr::Index(index) => pending.push(*index.expr),
+                Expr::Index(index) => pending.extend([*index.expr, *index.index]),
+                Expr::Array(array) => pending.extend(array.elems),
+                Expr::Closure(closure) => pending.push(*closure.body),
+                Expr::Range(range) => {
+                    pending.extend([range.start, range.end].into_iter().flatten().map(|end| *end))
+                }
                 Expr::Cast(cast) => pending.push(*cast.expr),
                 Expr::Field(field) => pending.push(*field.base),
                 Expr::Block(block) => pending.extend(block.block.stmts.into_iter().filter_map(value)),

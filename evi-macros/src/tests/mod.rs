@@ -4,6 +4,7 @@
 //! numbers of num-dual what its derivatives are, without the compiler's rules. Expressions are written as a
 //! user writes them. `tests/kernels.rs` of the workspace checks the same of the emitted code.
 
+mod assembled;
 mod differentiation;
 mod emission;
 mod fuzz;
@@ -16,6 +17,7 @@ mod simplification;
 mod snapshots;
 mod sparsity;
 mod systems;
+mod vectors;
 mod workbench;
 
 #[path = "../../../tests/random_expressions/mod.rs"]

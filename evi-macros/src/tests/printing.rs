@@ -103,3 +103,64 @@ fn a_long_expression_is_abbreviated() {
     let [unicode, latex] = printed(&format!("{{ let r0 = x; {} r20 }}", doubled.collect::<String>()));
     assert!(unicode.chars().count() < 4_000 && latex.len() < 4_000, "{unicode}");
 }
+
+/// The equations `left = right` of a scene in both notations, those of constraints with their names.
+fn equations(source: &str) -> Vec<[String; 2]> {
+    let mut diagnostics = Diagnostics::default();
+    let Ok(declaration) = syntax::parse(source.parse().expect("tokens"), &mut diagnostics) else {
+        panic!("{source} is no item");
+    };
+    let equation = |equation: crate::model::WrittenEquation| {
+        let name = if equation.name.is_empty() { String::new() } else { format!("{}: ", equation.name) };
+        let (left, right) = (equation.left, equation.right);
+        [format!("{name}{} = {}", left.unicode, right.unicode), format!("{} = {}", left.latex, right.latex)]
+    };
+    written(&declaration).into_iter().map(equation).collect()
+}
+
+#[test]
+fn sums_vectors_and_indices_are_printed_as_written() {
+    let found = equations(
+        "#[evi(coordinates(p: [3, 2], r: [3], x),
+              let gap = p[2] - [x, 1.0],
+              kinetic = sum(0..3, |k| 0.5 * m[k] * der(p[k]).norm_squared()) + der(r).dot(r.cross(b)) * x,
+              potential = g * sum(0..3, |i| m[i] * p[i][1] * (i + 1)) + gap.norm(),
+              constraint(link[i in 1..3]: (p[i] - p[i - 1]).norm_squared() == l.powi(2)),
+              constraint(weld: r == b),
+              force(p[i in 0..3][0]: sum(0..i, |j| p[j][0] - x)),
+              observe(tip: p[2]))]
+         struct S { m: [f64; 3], b: Vector3<f64>, g: f64, l: f64 }",
+    );
+    let expected = [
+        ["L = T − V", "L = T - V"],
+        [
+            "T = Σ_{k=0}^{2} ½ mₖ |ṗₖ|² + (ṙ · (r × b)) x",
+            "T = \\sum_{k=0}^{2} \\frac{1}{2} m_{k} \\left|\\dot{p}_{k}\\right|^2 + (\\dot{r} \\cdot (r \\times b)) x",
+        ],
+        [
+            "V = g Σ_{i=0}^{2} mᵢ p[i, 1] (i + 1) + |gap|",
+            "V = g \\sum_{i=0}^{2} m_{i} p_{i,1} (i + 1) + \\left|\\mathrm{gap}\\right|",
+        ],
+        ["f_p[i, 0] = Σ_{j=0}^{i−1} (p[j, 0] − x)", "f_{p_{i,0}} = \\sum_{j=0}^{i-1} (p_{j,0} - x)"],
+        ["tip = p₂", "\\mathrm{tip} = p_{2}"],
+        ["gap = p₂ − (x, 1)", "\\mathrm{gap} = p_{2} - (x, 1)"],
+        ["link[i in 1..3]: |pᵢ − pᵢ₋₁|² = l²", "\\left|p_{i} - p_{i-1}\\right|^2 = l^2"],
+        ["weld: r = b", "r = b"],
+    ];
+    assert_eq!(found, expected);
+}
+
+#[test]
+fn a_rigid_body_is_printed_as_its_energy() {
+    let found = equations(
+        "#[evi(rigid_body(b, mass = m, center = [0.0, 0.0, l], inertia = [j, j, k]), potential = m * g * b.point([0.0, 0.0, l])[2])]
+         struct S { m: f64, l: f64, j: f64, k: f64, g: f64 }",
+    );
+    let printed = |index: usize| found[index][0].as_str();
+    assert_eq!(
+        printed(1),
+        "T = ½ m |ḃ₀ + l ḃ₃|² + ¼ (j + k − j) |ḃ₁|² + ¼ (k + j − j) |ḃ₂|² + ¼ (j + j − k) |ḃ₃|²"
+    );
+    assert_eq!(printed(2), "V = m g (b₀ + 0 b₁ + 0 b₂ + l b₃)[2]");
+    assert_eq!((printed(3), printed(6)), ("b_unit1: |b₁|² = 1", "b_right12: b₁ · b₂ = 0"));
+}

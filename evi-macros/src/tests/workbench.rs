@@ -61,7 +61,7 @@ pub(super) fn compiled(source: &str) -> Compiled {
 }
 
 #[track_caller]
-fn resolved(source: &str, graph: &mut Graph) -> Model {
+pub(super) fn resolved(source: &str, graph: &mut Graph) -> Model {
     let mut diagnostics = Diagnostics::default();
     let tokens = source.parse().expect("a test's struct is made of Rust tokens");
     let Ok(declaration) = syntax::parse(tokens, &mut diagnostics) else {
@@ -100,6 +100,7 @@ impl Point {
             Symbol::Velocity(index) => spread(index, 2),
             Symbol::Time => self.values[4],
             Symbol::Input(index) => -0.6 + 0.31 * index as f64,
+            Symbol::Composite(_) => panic!("a loop has no value"),
         }
     }
 

@@ -3,13 +3,8 @@
 use evi_core::prelude::*;
 
 #[derive(MechanicalSystem)]
-#[evi(
-    coordinates(r: [3], p: [2, 3]),
-    kinetic = 0.5 * der(r).norm_squared() + 0.5 * der(p[0]).dot(der(p[1])),
-    potential = g * r[2],
-    constraint(unit: r.dot(r) == 1.0),
-)]
-struct Vectors { g: f64 }
+#[evi(coordinates(r: (3), p: [], s: [f64; 2], n: [0]), kinetic = 0.5 * der(r).norm_squared(), potential = 0.0)]
+struct Sizes;
 
 #[derive(MechanicalSystem)]
 #[evi(coordinates(x: f64), kinetic = 0.5 * der(x).powi(2), potential = 0.0)]

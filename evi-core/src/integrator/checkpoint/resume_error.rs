@@ -63,7 +63,7 @@ pub enum ResumeError {
         simulation: String,
     },
     /// The steps have another size.
-    #[error("the checkpoint is one of steps of h = {checkpoint}, the simulation takes h = {simulation}")]
+    #[error("the checkpoint is one of steps of h = {checkpoint:?}, the simulation takes h = {simulation:?}")]
     StepSize {
         /// That of the checkpoint.
         checkpoint: f64,

@@ -68,6 +68,11 @@ impl<const K: usize, F> Galerkin<K, F> {
     pub fn by_newton(self) -> Self {
         Self { by_newton: true, ..self }
     }
+
+    /// Whether [`by_newton`](Self::by_newton) has been called.
+    pub(crate) const fn is_by_newton(&self) -> bool {
+        self.by_newton
+    }
 }
 
 impl<const K: usize, F: Clone> Symmetric for Galerkin<K, F> {

@@ -8,7 +8,7 @@ use crate::array::Array;
 use crate::integrator::{IterationFailure, StepError};
 use crate::linear::{Factorization, largest_magnitude};
 use crate::mechanics::State;
-use crate::mechanics::{KickDriftKick, Lost, RoundOff};
+use crate::mechanics::{KickDriftKick, Lost, RoundOff, Sum};
 use crate::newton::{self, Progress, Tally};
 use crate::system::MechanicalSystem;
 
@@ -16,53 +16,51 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'_, S, F, R>
     /// Ends a step for which the corrections with one matrix did not suffice.
     #[inline(never)]
     pub(super) fn land_slowly(
-        self,
+        mut self,
         attempt: Option<Attempt<S, R::Sum>>,
-        momentum: R::Sum,
         history: &mut History<S>,
         state: &mut State<S>,
         tally: &mut impl Tally,
     ) -> Result<[Lost<S, R>; 2], StepError> {
-        let landing = match attempt {
-            Some(attempt) if attempt.is_trusted => self.continue_from(attempt, &history.predicted, tally)?,
-            _ => self.solve_anew(tally)?,
+        let carried_on = match attempt {
+            Some(attempt) => self.continue_from(attempt, tally)?,
+            None => None,
         };
-        let expected = history.expected_end_impulse(&landing.impulse);
-        let momentum = self.pulled(momentum, &landing.impulse);
-        self.land(landing, &expected, momentum, history, state, tally)
+        let (expected, mut landing) = match carried_on {
+            Some(landing) => (history.predicted.clone(), landing),
+            None => {
+                let none = S::PerConstraint::<f64>::from_fn(|_| 0.0);
+                self.expect_nothing(&state.p);
+                tally.begin_iteration();
+                let landing = self.iterate(0, none.clone(), self.end(), none.clone(), tally)?;
+                (none, landing)
+            }
+        };
+        let (jacobian, terms) = (self.jacobian.as_ref(), self.momentum.terms_mut().as_mut());
+        self.mechanics.subtract_constraint_force(jacobian, landing.impulse.as_ref(), terms);
+        landing.impulse = Array::from_fn(|c| expected[c] + landing.impulse[c]);
+        let at_end = history.expected_end_impulse(&landing.impulse);
+        self.land(landing, &at_end, history, state, tally)
     }
 
-    /// Newton's iteration after corrections with one matrix.
+    /// Newton's iteration after corrections with one matrix; `None` if they did not contract, or lead nowhere.
     fn continue_from(
         &self,
         Attempt { q, correction, residuals: [first, second], .. }: Attempt<S, R::Sum>,
-        predicted: &S::PerConstraint<f64>,
         tally: &mut impl Tally,
-    ) -> Result<Landing<S, R::Sum>, StepError> {
-        let impulse = Array::from_fn(|c| predicted[c] + correction.impulse[c]);
+    ) -> Result<Option<Landing<S, R::Sum>>, StepError> {
+        let impulse = correction.impulse;
         let scale = self.scale(&q);
         tally.begin_iteration();
         tally.see_correction(|| relative_length::<S>(&first, &scale));
         tally.see_correction(|| relative_length::<S>(&second, &scale));
         if is_round_off_next::<S>(&second, &first, &scale) {
-            return self.landing(q, impulse, CHORDS, tally);
+            return self.landing(q, impulse, CHORDS, tally).map(Some);
         }
         let slowest = newton::SLOWEST_CHORD * relative_length::<S>(&first, &scale);
         // Written so that a NaN does not contract.
         let contracts = relative_length::<S>(&second, &scale) <= slowest.max(newton::CHORD_ROUND_OFF);
-        if contracts && let Ok(landing) = self.iterate(CHORDS, second, q, impulse, tally) {
-            return Ok(landing);
-        }
-        self.solve_anew(tally)
-    }
-
-    /// Newton's iteration without the history.
-    #[cold]
-    #[inline(never)]
-    fn solve_anew(&self, tally: &mut impl Tally) -> Result<Landing<S, R::Sum>, StepError> {
-        let none = S::PerConstraint::<f64>::from_fn(|_| 0.0);
-        tally.begin_iteration();
-        self.iterate(0, none.clone(), self.end(&none), none, tally)
+        Ok(if contracts { self.iterate(CHORDS, second, q, impulse, tally).ok() } else { None })
     }
 
     /// The landing at `q`, where `φ = 0`.
@@ -80,7 +78,7 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'_, S, F, R>
         }
     }
 
-    /// Newton's iteration from `q = q₁(ℓ)`, with a fresh matrix for every correction. `previous` is the residual that the
+    /// Newton's iteration from `q = q₁(ℓ₀ + c)` for the `impulse` `c`, with a fresh matrix for every correction. `previous` is the residual that the
     /// last of the `corrections` so far was made for, 0 if there was none.
     fn iterate(
         &self,

@@ -9,11 +9,11 @@ mod careful;
 mod history;
 mod span;
 
-use core::borrow::Borrow;
-
-use self::attempt::Attempt;
+#[cfg(feature = "std")]
+pub(crate) use self::attempt::TRUSTED;
+use self::attempt::{Attempt, round_off_of};
 use self::history::History;
-use self::span::{Span, move_by};
+use self::span::{Span, drift_of, move_by};
 use super::StepError;
 use crate::array::Array;
 use crate::mechanics::{KickDriftKick, Lost, Mechanics, RoundOff, State, Sum};
@@ -24,12 +24,15 @@ use crate::system::MechanicalSystem;
 /// A step without its constraint forces, with the impulses that it has needed so far.
 pub(crate) struct MultiplierStep<S: MechanicalSystem, F> {
     free: F,
+    /// What is round-off of the residuals of the constraints, where it is the same for every configuration on them.
+    allowed: Option<S::PerConstraint<f64>>,
     history: History<S>,
 }
 
 /// The end of a step on the constraints.
 struct Landing<S: MechanicalSystem, Q> {
     q: Q,
+    /// What was added to the impulse that the span begins with; in the end, the whole impulse.
     impulse: S::PerConstraint<f64>,
     /// Factors of `G M⁻¹ Gᵀ` there.
     gram: S::GramFactors,
@@ -38,8 +41,9 @@ struct Landing<S: MechanicalSystem, Q> {
 }
 
 impl<S: MechanicalSystem, F: KickDriftKick<S>> MultiplierStep<S, F> {
-    pub(crate) fn new(free: F) -> Self {
-        Self { free, history: History::none() }
+    pub(crate) fn new(mechanics: &Mechanics<S>, free: F) -> Self {
+        let allowed = mechanics.constant_reach().map(|reach| round_off_of(&reach));
+        Self { free, allowed, history: History::none() }
     }
 
     /// The step without its constraint forces.
@@ -66,50 +70,33 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>> MultiplierStep<S, F> {
         round_off: R,
         tally: &mut impl Tally,
     ) -> Result<[Lost<S, R>; 2], StepError> {
-        let Self { free, history } = self;
-        let t = state.t + h;
-        let momentum = round_off.momentum(&state.p);
-        let kicked = free.kicked_at_start(mechanics, state.t, &state.q, momentum.terms());
-        let momentum = momentum.with(kicked);
-        let half_way = momentum.value().borrow().clone();
-        let free_difference = free.drift().times(|i| half_way[i]);
+        let Self { free, allowed, history } = self;
         if S::N_CONSTRAINTS == 0 {
-            let (q, lost_q) = round_off.position(&state.q).plus(&free_difference).split();
-            let kicked = free.kicked_at_end(mechanics, t, &q, momentum.terms());
-            let (p, lost_p) = momentum.with(kicked).split();
+            let kick = free.start_kick(mechanics, state.t, &state.q);
+            let momentum = round_off.momentum(&state.p).plus(&kick);
+            let difference = drift_of(&*free, &momentum);
+            let (q, lost_q) = round_off.position(&state.q).plus(&difference).split();
+            let t = state.t + h;
+            let (p, lost_p) = momentum.plus(&free.end_kick(mechanics, t, &q)).split();
             state.replace(t, q, free.legendre().velocity(&p), p)?;
             return Ok([lost_q, lost_p]);
         }
-        let (_, jacobian) = S::constraint_derivatives(&mechanics.constants, state.t, &state.q);
-        let directions = mechanics.constraint_directions(&jacobian, free.drift());
-        let span = Span {
-            mechanics,
-            free: &*free,
-            t_start: state.t,
-            t_end: t,
-            start: state.q.clone(),
-            round_off,
-            free_difference,
-            jacobian,
-            directions,
+        let mut span = Span::new(mechanics, &*free, h, state, round_off, &history.predicted);
+        let Some(attempt) = span.attempt(&history.predicted, allowed.as_ref(), tally) else {
+            return span.land_slowly(None, history, state, tally);
         };
-        let Some(attempt) = span.attempt(&history.predicted, tally) else {
-            return span.land_slowly(None, momentum, history, state, tally);
-        };
-        if attempt.is_trusted
-            && attempt.is_solved
+        if attempt.is_solved
             && let Ok(gram) = free.legendre().factor_gram(mechanics, &attempt.jacobian, tally)
         {
             let Attempt { q, correction, corrections, .. } = attempt;
-            let mut momentum = span.pulled(momentum, &history.predicted);
-            move_by::<S, _>(&mut momentum, &correction.pull);
+            move_by::<S, _>(&mut span.momentum, &correction.pull);
             // As good a guess as that from the impulse itself, and known at the start of the step.
             let expected = history.expected_end_impulse(&history.predicted);
             let impulse = Array::from_fn(|c| history.predicted[c] + correction.impulse[c]);
             let landing = Landing { q, impulse, gram, corrections };
-            return span.land(landing, &expected, momentum, history, state, tally);
+            return span.land(landing, &expected, history, state, tally);
         }
-        span.land_slowly(Some(attempt), momentum, history, state, tally)
+        span.land_slowly(Some(attempt), history, state, tally)
     }
 }
 
@@ -120,16 +107,14 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'_, S, F, R>
         self,
         Landing { q: position, impulse, gram, corrections }: Landing<S, R::Sum>,
         expected: &S::PerConstraint<f64>,
-        momentum: R::Sum,
         history: &mut History<S>,
         state: &mut State<S>,
         tally: &mut impl Tally,
     ) -> Result<[Lost<S, R>; 2], StepError> {
-        let Self { mechanics, free, t_end: t, .. } = self;
+        let Self { mechanics, free, t_end: t, momentum, .. } = self;
         tally.count_corrections(corrections);
         let (q, lost_q) = position.split();
-        let kicked = free.kicked_at_end(mechanics, t, &q, momentum.terms());
-        let momentum = momentum.with(kicked);
+        let momentum = momentum.plus(&free.end_kick(mechanics, t, &q));
         let (_, jacobian) = S::constraint_derivatives(&mechanics.constants, t, &q);
         let (v, momentum) = free.legendre().project(mechanics, &gram, &jacobian, expected, momentum);
         let (p, lost_p) = momentum.split();
@@ -139,4 +124,4 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'_, S, F, R>
     }
 }
 
-memory!([S: MechanicalSystem, F] MultiplierStep<S, F>, |words| Self { free: _, history } => { words.part(history) });
+memory!([S: MechanicalSystem, F] MultiplierStep<S, F>, |words| Self { free: _, allowed: _, history } => { words.part(history) });

@@ -4,11 +4,15 @@ use core::borrow::Borrow;
 
 use crate::array::Array;
 use crate::linear::Factorization;
-use crate::mechanics::{Coupling, Directions, KickDriftKick, Mechanics, NOTHING, RoundOff, Sum};
+use crate::mechanics::{Coupling, Directions, KickDriftKick, Mechanics, NOTHING, RoundOff, State, Sum};
 use crate::system::MechanicalSystem;
 
-/// The motion of one step as a function of the impulse.
-pub(super) struct Span<'a, S: MechanicalSystem, F, R> {
+/// The motion of one step as a function of the impulse, from the one that is expected:
+///
+/// ```text
+/// p½ = p₀ + k₀ − G₀ᵀℓ₀      q₁(ℓ₀ + c) = q₀ + D p½ − D G₀ᵀ c
+/// ```
+pub(super) struct Span<'a, S: MechanicalSystem, F, R: RoundOff<S>> {
     pub(super) mechanics: &'a Mechanics<S>,
     pub(super) free: &'a F,
     pub(super) t_start: f64,
@@ -16,8 +20,10 @@ pub(super) struct Span<'a, S: MechanicalSystem, F, R> {
     /// `q₀`.
     pub(super) start: S::PerCoordinate<f64>,
     pub(super) round_off: R,
-    /// `D p½`, without constraint forces.
-    pub(super) free_difference: S::PerCoordinate<f64>,
+    /// `p½`.
+    pub(super) momentum: R::Sum,
+    /// `D p½`.
+    pub(super) difference: S::PerCoordinate<f64>,
     /// Varying entries of `G₀`.
     pub(super) jacobian: S::PerJacobianEntry<f64>,
     /// `D G₀ᵀ`.
@@ -36,19 +42,57 @@ pub(super) struct Correction<S: MechanicalSystem> {
 /// Solver with `G₁ D G₀ᵀ`.
 pub(super) type DriftGram<S, F> = <<F as KickDriftKick<S>>::Coupling as Coupling<S>>::GramFactors;
 
-impl<S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'_, S, F, R> {
+impl<'a, S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'a, S, F, R> {
+    /// The step of size `h` from `state`, on which the impulse `expected` acts.
+    #[inline(always)]
+    pub(super) fn new(
+        mechanics: &'a Mechanics<S>,
+        free: &'a F,
+        h: f64,
+        state: &State<S>,
+        round_off: R,
+        expected: &S::PerConstraint<f64>,
+    ) -> Self {
+        let (_, jacobian) = S::constraint_derivatives(&mechanics.constants, state.t, &state.q);
+        // The momentum comes last, since it is known last.
+        let mut kick = free.start_kick(mechanics, state.t, &state.q);
+        mechanics.subtract_constraint_force(jacobian.as_ref(), expected.as_ref(), kick.as_mut());
+        let momentum = round_off.momentum(&state.p).plus(&kick);
+        let difference = drift_of(free, &momentum);
+        let directions = mechanics.constraint_directions(&jacobian, free.drift());
+        let (t_start, start) = (state.t, state.q.clone());
+        Self {
+            mechanics,
+            free,
+            t_start,
+            t_end: t_start + h,
+            start,
+            round_off,
+            momentum,
+            difference,
+            jacobian,
+            directions,
+        }
+    }
+
+    /// Begins with `ℓ₀ = 0`, anew from the momentum `p₀`: what is expected, added to what is there, may be a small difference of the two.
+    #[inline(always)]
+    pub(super) fn expect_nothing(&mut self, p: &S::PerCoordinate<f64>) {
+        let kick = self.free.start_kick(self.mechanics, self.t_start, &self.start);
+        self.momentum = self.round_off.momentum(p).plus(&kick);
+        self.difference = drift_of(self.free, &self.momentum);
+    }
+
     /// `φ` and the varying entries of `G` at the end of the step.
     #[inline(always)]
     pub(super) fn constraints_at(&self, q: &R::Sum) -> (S::PerConstraint<f64>, S::PerJacobianEntry<f64>) {
         S::constraint_derivatives(&self.mechanics.constants, self.t_end, q.value().borrow())
     }
 
-    /// `q₁(ℓ) = q₀ − D G₀ᵀ ℓ + d_free`; the difference comes last, since it is known last.
+    /// `q₁(ℓ₀)`.
     #[inline(always)]
-    pub(super) fn end(&self, impulse: &S::PerConstraint<f64>) -> R::Sum {
-        let mut end = self.round_off.position(&self.start);
-        move_by::<S, _>(&mut end, &self.along(impulse));
-        end.plus(&self.free_difference)
+    pub(super) fn end(&self) -> R::Sum {
+        self.round_off.position(&self.start).plus(&self.difference)
     }
 
     /// The correction for `residual`. The derivative of `φ(q₁(ℓ))` is `−G₁ D G₀ᵀ`, the `matrix` but for the sign.
@@ -60,9 +104,13 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'_, S, F, R>
     ) -> Correction<S> {
         let mut correction = residual.clone();
         let factor = matrix.solve_up_to_factor(&mut correction);
-        let moved = self.along(&correction);
         let mut pull = S::PerCoordinate::<f64>::from_fn(|_| NOTHING);
         self.mechanics.add_constraint_force(self.jacobian.as_ref(), correction.as_ref(), pull.as_mut());
+        let moved = if F::Coupling::IS_DIAGONAL {
+            self.free.drift().times(|i| pull[i])
+        } else {
+            self.along(&correction)
+        };
         Correction {
             impulse: Array::from_fn(|c| correction[c] * factor),
             pull: Array::from_fn(|i| pull[i] * factor),
@@ -72,28 +120,14 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'_, S, F, R>
 
     /// `D G₀ᵀ y`.
     #[inline(always)]
-    pub(super) fn along(&self, y: &S::PerConstraint<f64>) -> S::PerCoordinate<f64> {
+    fn along(&self, y: &S::PerConstraint<f64>) -> S::PerCoordinate<f64> {
         let mut sum = S::PerCoordinate::<f64>::from_fn(|_| NOTHING);
-        if F::Coupling::IS_DIAGONAL {
-            for entry in S::STRUCTURE.jacobian.q {
-                sum[entry.col] += self.directions[entry.row][entry.col] * y[entry.row];
-            }
-        } else {
-            for c in 0..S::N_CONSTRAINTS {
-                for i in 0..S::N_COORDINATES {
-                    sum[i] += self.directions[c][i] * y[c];
-                }
+        for c in 0..S::N_CONSTRAINTS {
+            for i in 0..S::N_COORDINATES {
+                sum[i] += self.directions[c][i] * y[c];
             }
         }
         sum
-    }
-
-    /// The `momentum` less `G₀ᵀ ℓ`.
-    #[inline(always)]
-    pub(super) fn pulled(&self, mut momentum: R::Sum, impulse: &S::PerConstraint<f64>) -> R::Sum {
-        let terms = momentum.terms_mut().as_mut();
-        self.mechanics.subtract_constraint_force(self.jacobian.as_ref(), impulse.as_ref(), terms);
-        momentum
     }
 
     /// `φ(q − d) − φ(q) + G d = ½ dᵀ φ_qq d`, exactly.
@@ -108,8 +142,7 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'_, S, F, R>
     /// found from.
     pub(super) fn scale(&self, end: &R::Sum) -> S::PerConstraint<f64> {
         let (start, end) = (&self.start, end.value());
-        let reach =
-            Array::from_fn(|i| start[i].abs() + self.free_difference[i].abs() + end.borrow()[i].abs());
+        let reach = Array::from_fn(|i| start[i].abs() + self.difference[i].abs() + end.borrow()[i].abs());
         self.mechanics.constraint_scale(&self.jacobian, &reach)
     }
 }
@@ -124,6 +157,16 @@ impl<S: MechanicalSystem> Correction<S> {
             moved: Array::from_fn(|i| self.moved[i] + next.moved[i]),
         }
     }
+}
+
+/// `D p½`.
+#[inline(always)]
+pub(super) fn drift_of<S: MechanicalSystem, F: KickDriftKick<S>>(
+    free: &F,
+    momentum: &impl Sum<S>,
+) -> S::PerCoordinate<f64> {
+    let half_way = momentum.value();
+    free.drift().times(|i| half_way.borrow()[i])
 }
 
 /// Subtracts `moved` from the sum.

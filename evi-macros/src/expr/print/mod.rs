@@ -5,6 +5,7 @@
 //! factors move in front, functions without parentheses move to the end of their product. A long expression
 //! is abbreviated by `…`.
 
+mod arrays;
 mod names;
 
 use std::cell::Cell;
@@ -141,6 +142,7 @@ impl<'a> Printer<'a> {
     fn nested(&self, id: ExprId) -> Text {
         match self.graph.node(id) {
             Node::Number(number) => self.number(number.value()),
+            Node::Symbol(Symbol::Composite(index)) => self.composite(self.graph.composite_at(index)),
             Node::Symbol(name) => self.symbol(name),
             Node::Binary(Binary::Add | Binary::Sub, ..) => self.sum(id),
             Node::Unary(Unary::Neg, _) | Node::Binary(Binary::Mul | Binary::Div, ..) => self.sum(id),
@@ -415,12 +417,18 @@ impl<'a> Printer<'a> {
 /// Nodes of the trees below `root`, as far as a `usize` counts.
 fn tree_sizes(graph: &Graph, root: ExprId, is_leaf: impl Fn(ExprId) -> bool) -> HashMap<ExprId, usize> {
     let mut sizes: HashMap<ExprId, usize> = HashMap::new();
-    for id in graph.reachable(&[root], &is_leaf) {
+    // Operands stand before their users, and what expressions of arrays are made of before these.
+    for id in graph.reachable_in_loops(&[root]) {
         if is_leaf(id) {
             sizes.insert(id, 1);
             continue;
         }
-        let below = graph.operands(id).map(|operand| sizes[&operand]).fold(0, usize::saturating_add);
+        let inside = match graph.node(id) {
+            Node::Symbol(Symbol::Composite(index)) => graph.composite_at(index).operands(),
+            _ => Vec::new(),
+        };
+        let below =
+            graph.operands(id).chain(inside).map(|operand| sizes[&operand]).fold(0, usize::saturating_add);
         sizes.insert(id, below.saturating_add(1));
     }
     sizes

@@ -87,6 +87,7 @@ pub(super) fn symbol(name: &str, has_dot: bool, notation: Notation) -> String {
     // The last segment of a path; a raw identifier without its mark.
     let name = name.rsplit("::").next().unwrap_or(name).trim();
     let name = name.strip_prefix("r#").unwrap_or(name);
+    let (name, place) = name.strip_suffix(']').and_then(|name| name.split_once('[')).unwrap_or((name, ""));
     let (base, index) = base_and_index(name);
     let greek = GREEK.iter().find(|(greek, ..)| *greek == base);
     let is_long = greek.is_none() && base.chars().count() > 1;
@@ -96,7 +97,7 @@ pub(super) fn symbol(name: &str, has_dot: bool, notation: Notation) -> String {
             let base = if has_dot { with_dot(&base) } else { base };
             let is_number = index.chars().all(|c| c.is_ascii_digit());
             let index = if is_number { index.chars().map(subscript).collect() } else { format!("_{index}") };
-            base + &index
+            base + &index + &place_in_text(place, !index.is_empty())
         }
         Notation::Latex => {
             let base = match greek {
@@ -105,13 +106,52 @@ pub(super) fn symbol(name: &str, has_dot: bool, notation: Notation) -> String {
                 None => base.to_owned(),
             };
             let base = if has_dot { format!("\\dot{{{base}}}") } else { base };
+            let place = place.replace(" ", "").replace('−', "-");
             match index.chars().count() {
+                _ if !place.is_empty() && index.is_empty() => format!("{base}_{{{place}}}"),
+                _ if !place.is_empty() => {
+                    format!("{base}_{{\\mathrm{{{}}},{place}}}", index.replace('_', "\\_"))
+                }
                 0 => base,
                 1 => format!("{base}_{index}"),
                 _ if index.chars().all(|c| c.is_ascii_digit()) => format!("{base}_{{{index}}}"),
                 _ => format!("{base}_{{\\mathrm{{{}}}}}", index.replace('_', "\\_")),
             }
         }
+    }
+}
+
+/// The place of an element: below the line where Unicode has all of its characters there, in brackets otherwise.
+fn place_in_text(place: &str, has_index: bool) -> String {
+    if place.is_empty() {
+        return String::new();
+    }
+    let below: Option<String> = place.chars().filter(|c| *c != ' ').map(character_below).collect();
+    match below {
+        Some(below) if !has_index => below,
+        _ => format!("[{place}]"),
+    }
+}
+
+/// A character of an index below the line.
+fn character_below(c: char) -> Option<char> {
+    const LETTERS: [(char, char); 12] = [
+        ('i', 'ᵢ'),
+        ('j', 'ⱼ'),
+        ('k', 'ₖ'),
+        ('l', 'ₗ'),
+        ('m', 'ₘ'),
+        ('n', 'ₙ'),
+        ('r', 'ᵣ'),
+        ('s', 'ₛ'),
+        ('u', 'ᵤ'),
+        ('v', 'ᵥ'),
+        ('+', '₊'),
+        ('−', '₋'),
+    ];
+    match c {
+        '0'..='9' => Some(subscript(c)),
+        _ => LETTERS.iter().find(|(letter, _)| *letter == c).map(|(_, below)| *below),
     }
 }
 

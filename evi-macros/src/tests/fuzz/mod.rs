@@ -35,7 +35,7 @@ fn report(kind: &str, verdicts: &[Verdict], least_implemented: f64) {
 fn structs_by_the_grammar() {
     let property =
         |choices: &mut Choices| expanded(grammar::structure(choices).parse().expect("the grammar's tokens"));
-    report("by the grammar", &check(1000, STACK, property), 0.4);
+    report("by the grammar", &check(2000, STACK, property), 0.4);
 }
 
 #[test]
@@ -44,7 +44,35 @@ fn structs_with_mutated_tokens() {
         let tokens = grammar::structure(choices).parse().expect("the grammar's tokens");
         expanded(mutation::mutated(tokens, choices))
     };
-    report("mutated", &check(2000, STACK, property), 0.005);
+    report("mutated", &check(3000, STACK, property), 0.005);
+}
+
+/// Scenes with arrays, unrolled and as loops.
+const SCENES_WITH_ARRAYS: [&str; 4] = [
+    "#[evi(coordinates(p: [4, 2], x), let d = p[1] - p[0], kinetic = sum(0..4, |i| m[i] * der(p[i]).norm_squared()) + der(x).powi(2),
+        potential = g.dot([x, d[0], d.norm()]) + sum(1..4, |i| sum(0..i, |j| (p[i] - p[j]).norm())),
+        constraint(link[i in 1..4]: (p[i] - p[i - 1]).norm_squared() == 1.0), constraint(weld: p[3] == [x, 0.0]),
+        force(p[i in 0..4][1]: i * x), frequency(p[2]: m[0]), observe(v[i in 0..2]: der(p[i])), input(u), force(x: u))]
+     struct Fuzzed { m: [f64; 4], g: Vector3<f64> }",
+    "#[evi(coordinates(p: [N, 2], x), let d = p[N - 1] - p[0], kinetic = 0.5 * (sum(0..N, |i| m[i] * der(p[i]).norm_squared()) + der(x).powi(2)),
+        potential = g.dot([x, d[0], d.norm()]) - sum(1..N, |i| sum(0..i, |j| (p[i] - p[j]).norm())) / 2.0,
+        constraint(link[i in 1..N]: (p[i] - p[i - 1]).norm_squared() == 1.0), constraint(weld: p[N - 1] == [x, 0.0]),
+        force(p[i in 0..N][1]: i * x), dissipation = sum(0..N, |k| der(p[k]).dot(der(p[k]))))]
+     struct Fuzzed { m: [f64; N], g: SVector<f64, 3> }",
+    "#[evi(coordinates(p: [300, 2]), lagrangian = sum(0..300, |i| der(p[i]).norm_squared() * (i + 1)),
+        constraint(net[i in 0..4, j in 0..i]: p[4 * i + j] == p[M * j + i]))] struct Fuzzed;",
+    "#[evi(rigid_body(b, mass = 1.0, center = [0.0, 0.0, l], inertia = j), rigid_body(e, mass = m, center = j, inertia = [1.0, 2.0, 3.0]),
+        potential = b.point([0.0, l, 1.0]).dot(e[0]), constraint(joint: b.point(j) == e.point([0.0, 0.0, 1.0])))]
+     struct Fuzzed { l: f64, m: f64, j: [f64; 3] }",
+];
+
+#[test]
+fn scenes_with_arrays_with_mutated_tokens() {
+    let property = |choices: &mut Choices| {
+        let tokens = choices.pick(&SCENES_WITH_ARRAYS).parse().expect("Rust tokens");
+        expanded(mutation::mutated(tokens, choices))
+    };
+    report("mutated arrays", &check(1500, STACK, property), 0.005);
 }
 
 #[test]
@@ -59,7 +87,7 @@ fn soup_in_the_attribute() {
         let source = format!("#[evi({items})] struct Fuzzed {{ a: f64 }}");
         expanded(mutation::with_attribute(source.parse().expect("tokens"), soup))
     };
-    report("soup", &check(4000, STACK, property), 0.01);
+    report("soup", &check(5000, STACK, property), 0.01);
 }
 
 /// Expands twice, and looks at what comes out.

@@ -1,0 +1,123 @@
+//! Trajectories per second and core at the errors that heyoka's tolerances lead to: double pendulums near the horizontal, to T = 10.
+
+use std::error::Error;
+use std::fmt::Write;
+use std::time::Instant;
+
+use evi_benches::external::{BatchRow, PeerError, heyoka_batch};
+use evi_core::ensemble::{ByIndex, Ends, Ensemble, LaneScheme, Member};
+use evi_core::prelude::*;
+use evi_examples::DoublePendulum;
+use serde::Serialize;
+
+use crate::family::fraction;
+
+/// A row of `equal_error.csv`.
+#[derive(Clone, Serialize)]
+pub(crate) struct Row {
+    method: String,
+    /// Tolerance, or step size.
+    setting: f64,
+    trajectories: usize,
+    /// The median over the trajectories of the largest error of a position at the end.
+    median_error: f64,
+    trajectories_per_second: f64,
+}
+
+const HORIZON: f64 = 10.0;
+const TOLERANCES: [f64; 3] = [1e-4, 1e-8, 1e-12];
+
+fn member(index: usize) -> Member<DoublePendulum> {
+    let system = DoublePendulum::UNIT;
+    let quarter = core::f64::consts::FRAC_PI_2;
+    let angle = |salt| quarter + 0.1 * (fraction(index, salt) - 0.5);
+    let start = system.at_angles(angle(0.2), angle(0.6));
+    Member::of(&system, start.q, start.v)
+}
+
+/// Positions at the end, trajectory by trajectory, and the seconds that they took.
+fn moved<F>(scheme: F, steps: u64, count: usize) -> Result<(Vec<[f64; 4]>, f64), Box<dyn Error>>
+where
+    F: LaneScheme<DoublePendulum> + Sync,
+{
+    let ensemble = Ensemble::new(scheme).sampled(1, steps).threads(1);
+    let start = Instant::now();
+    let outcome = ensemble.run(&ByIndex::new(count, member), &Ends)?;
+    let seconds = start.elapsed().as_secs_f64();
+    if let Some(failure) = outcome.failures.first() {
+        return Err(failure.error.clone().into());
+    }
+    let ends = outcome.gathered.rows().map(|row| [row[3], row[4], row[5], row[6]]).collect();
+    Ok((ends, seconds))
+}
+
+pub(crate) fn all(quick: bool) -> Result<Vec<Row>, Box<dyn Error>> {
+    let (count, repetitions) = if quick { (64, 5) } else { (64, 25) };
+    // Sixteenth order far below the errors that are compared, but for the round-off that the motion amplifies.
+    let (reference, _) = moved(Galerkin::<8>::new(0.02), 500, count)?;
+    let error = |ends: &[[f64; 4]]| {
+        let distance = |(a, b): (&[f64; 4], &[f64; 4])| {
+            a.iter().zip(b).fold(0.0_f64, |largest, (a, b)| largest.max((a - b).abs()))
+        };
+        let mut errors: Vec<f64> = ends.iter().zip(&reference).map(distance).collect();
+        errors.sort_by(f64::total_cmp);
+        errors[count / 2]
+    };
+    let mut rows = Vec::new();
+    let starts: Vec<([f64; 4], [f64; 4])> =
+        (0..count).map(member).map(|member| (member.q, member.v)).collect();
+    match heyoka_batch("double_pendulum", &DoublePendulum::UNIT, &starts, HORIZON, &TOLERANCES, repetitions) {
+        Ok(found) => rows.extend(found.iter().map(|BatchRow { tolerance, microseconds, ends, batch }| Row {
+            method: format!("heyoka, batches of {batch}"),
+            setting: *tolerance,
+            trajectories: count,
+            median_error: error(ends),
+            trajectories_per_second: count as f64 / (1e-6 * microseconds),
+        })),
+        Err(error @ PeerError::NotInstalled { .. }) => println!("{error}"),
+        Err(error) => return Err(error.into()),
+    }
+    let mut fastest = |method: &str,
+                       h: f64,
+                       take: &dyn Fn() -> Result<(Vec<[f64; 4]>, f64), Box<dyn Error>>|
+     -> Result<(), Box<dyn Error>> {
+        let mut seconds = f64::INFINITY;
+        let mut ends = Vec::new();
+        for _ in 0..repetitions {
+            let (found, taken) = take()?;
+            (ends, seconds) = (found, seconds.min(taken));
+        }
+        rows.push(Row {
+            method: method.to_owned(),
+            setting: h,
+            trajectories: count,
+            median_error: error(&ends),
+            trajectories_per_second: count as f64 / seconds,
+        });
+        Ok(())
+    };
+    for steps in [64, 80, 100, 125, 160, 200, 250] {
+        let h = HORIZON / steps as f64;
+        fastest("Galerkin 8, lanes", h, &|| moved(Galerkin::<8>::new(h), steps, count))?;
+    }
+    for steps in [100, 160, 250] {
+        let h = HORIZON / steps as f64;
+        fastest("Galerkin 4, lanes", h, &|| moved(Galerkin::<4>::new(h), steps, count))?;
+    }
+    Ok(rows)
+}
+
+/// The rows as text.
+pub(crate) fn table(rows: &[Row]) -> String {
+    let mut text =
+        format!("{:<22} {:>9} {:>13} {:>20}\n", "method", "setting", "median error", "trajectories/s/core");
+    for row in rows {
+        // Writing to a string does not fail.
+        let _ = writeln!(
+            text,
+            "{:<22} {:>9.1e} {:>13.1e} {:>20.0}",
+            row.method, row.setting, row.median_error, row.trajectories_per_second
+        );
+    }
+    text
+}

@@ -1,0 +1,53 @@
+//! Many trajectories at once: nanoseconds per trajectory and step, beside a lane kernel written by hand and heyoka's batch.
+//!
+//! `cargo run --release --example ensemble -- --out DIR [--quick]`. Out: two tables on the terminal, `ensemble.csv`, and `equal_error.csv`:
+//! trajectories per second of the double pendulum to T = 10 at the errors that heyoka's tolerances lead to. With the feature `mpi` the same ensemble runs on 1, 2 and
+//! 4 processes. Lanes take the vector instructions that the machine has, found at run time; everything else those of the build (`RUSTFLAGS="-C target-cpu=native"` for all of the machine).
+
+mod equal_error;
+mod family;
+#[cfg(feature = "mpi")]
+mod processes;
+mod speed;
+
+use std::error::Error;
+use std::path::PathBuf;
+
+use clap::Parser;
+use evi_benches::program::files;
+use evi_benches::program::machine::Machine;
+
+/// Speed of ensembles.
+#[derive(Parser)]
+struct Options {
+    /// Folder for the tables, made if it is missing.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Fewer and shorter repetitions: figures for a first look.
+    #[arg(long)]
+    quick: bool,
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    #[cfg(feature = "mpi")]
+    if std::env::args().any(|argument| argument == processes::AS_PROCESS) {
+        return processes::take_part();
+    }
+    let Options { out, quick } = Options::parse();
+    // Before the minutes of measuring: a folder that cannot be written is told at once.
+    out.as_deref().map(files::prepare).transpose()?;
+    println!("{}\n", Machine::present().line());
+    #[cfg_attr(not(feature = "mpi"), expect(unused_mut, reason = "rows of processes come with the feature"))]
+    let mut rows = speed::all(quick)?;
+    #[cfg(feature = "mpi")]
+    rows.extend(processes::all()?);
+    print!("{}", speed::table(&rows));
+    let errors = equal_error::all(quick)?;
+    print!("\n{}", equal_error::table(&errors));
+    if let Some(out) = out {
+        for (name, text) in [("ensemble.csv", files::csv(&rows)), ("equal_error.csv", files::csv(&errors))] {
+            println!("wrote {}", files::replace(&out.join(name), &text)?.display());
+        }
+    }
+    Ok(())
+}

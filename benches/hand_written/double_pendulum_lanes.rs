@@ -1,0 +1,266 @@
+//! Eight double pendulums side by side, as an expert would write their step for this scene alone: that of `double_pendulum.rs`, a pendulum per lane.
+//!
+//! Every pendulum has its own masses and lengths. Tests are made for all lanes at once; what a lane does not need is blended out.
+
+use evi_core::ensemble::LaneMask;
+use evi_core::scalar::{InstructionSet, LANES, LaneOperation, Lanes, Scalar};
+use evi_examples::{DoublePendulum, Start};
+
+use super::MAX_CORRECTIONS;
+
+type Pair = [Lanes; 2];
+
+/// Runs of eight double pendulums.
+pub struct HandWrittenLanes {
+    /// Rod vectors.
+    a: Pair,
+    b: Pair,
+    /// Their velocities times `h`.
+    wa: Pair,
+    wb: Pair,
+    h: f64,
+    /// `h² g / 2`.
+    fall: Lanes,
+    /// `β`.
+    mass_ratio: Lanes,
+    /// `l₁²`, `l₂²`.
+    squared_lengths: Pair,
+    /// `β l₂²`.
+    outer: Lanes,
+    /// `β l₁² l₂²`.
+    both: Lanes,
+    /// `Q₁` and `Q₂` are below `bounds[0] δ² + bounds[1] ε²`.
+    bounds: Pair,
+    /// A residual below this is round-off.
+    round_off: Lanes,
+    /// `(μ, ν)` of the last four steps, newest first.
+    multipliers: [[Lanes; 4]; 2],
+}
+
+/// Half the slopes of the constraints by the multipliers, inverted but for the factor.
+struct Slopes {
+    adjugate: [Pair; 2],
+    r: Lanes,
+}
+
+/// `a · b + c`.
+#[inline(always)]
+fn fma<const FUSED: bool>(a: Lanes, b: Lanes, c: Lanes) -> Lanes {
+    a.times_plus::<FUSED>(b, c)
+}
+
+#[inline(always)]
+fn dot<const FUSED: bool>(a: Pair, b: Pair) -> Lanes {
+    fma::<FUSED>(a[0], b[0], a[1] * b[1])
+}
+
+#[inline(always)]
+fn sum(a: Pair, b: Pair) -> Pair {
+    [a[0] + b[0], a[1] + b[1]]
+}
+
+#[inline(always)]
+fn difference(a: Pair, b: Pair) -> Pair {
+    [a[0] - b[0], a[1] - b[1]]
+}
+
+impl Slopes {
+    /// `(δ, ε)` that removes the residual `f` of the constraints.
+    #[inline(always)]
+    fn correction<const FUSED: bool>(&self, f: Pair) -> Pair {
+        [dot::<FUSED>(self.adjugate[0], f) * self.r, dot::<FUSED>(self.adjugate[1], f) * self.r]
+    }
+}
+
+impl HandWrittenLanes {
+    /// Runs from consistent starts.
+    pub fn new(systems: [DoublePendulum; LANES], starts: [Start<4>; LANES], h: f64) -> Self {
+        let of = |value: &dyn Fn(&DoublePendulum, &Start<4>) -> f64| {
+            Lanes::new(core::array::from_fn(|lane| value(&systems[lane], &starts[lane])))
+        };
+        let beta = |system: &DoublePendulum| 1.0 + system.m1 / system.m2;
+        let square = |x: f64| x * x;
+        Self {
+            a: [of(&|_, start| start.q[0]), of(&|_, start| start.q[1])],
+            b: [of(&|_, start| start.q[2] - start.q[0]), of(&|_, start| start.q[3] - start.q[1])],
+            wa: [of(&|_, start| h * start.v[0]), of(&|_, start| h * start.v[1])],
+            wb: [
+                of(&|_, start| h * (start.v[2] - start.v[0])),
+                of(&|_, start| h * (start.v[3] - start.v[1])),
+            ],
+            h,
+            fall: of(&|system, _| 0.5 * h * h * system.g),
+            mass_ratio: of(&|system, _| beta(system)),
+            squared_lengths: [of(&|system, _| square(system.l1)), of(&|system, _| square(system.l2))],
+            outer: of(&|system, _| beta(system) * square(system.l2)),
+            both: of(&|system, _| beta(system) * square(system.l1) * square(system.l2)),
+            bounds: [
+                of(&|system, _| 2.0 * square(system.l1)),
+                of(&|system, _| 2.0 * square(beta(system) * system.l2)),
+            ],
+            round_off: of(&|system, _| 0.25 * f64::EPSILON * square(system.l1).min(square(system.l2))),
+            multipliers: [[Lanes::ZERO; 4]; 2],
+        }
+    }
+
+    /// What the multipliers `(μ, ν)` add to `−wₐ` and to `w_b`.
+    #[inline(always)]
+    fn pull<const FUSED: bool>(&self, [mu, nu]: Pair) -> [Pair; 2] {
+        let outer = self.mass_ratio * nu;
+        let along = |i: usize| mu * self.a[i];
+        let (x, y) = (along(0), along(1));
+        [
+            [fma::<FUSED>(-nu, self.b[0], x), fma::<FUSED>(-nu, self.b[1], y)],
+            [fma::<FUSED>(-outer, self.b[0], x), fma::<FUSED>(-outer, self.b[1], y)],
+        ]
+    }
+
+    /// Residuals of the constraints and their slopes at the ends `a'`, `b'` of the rods.
+    #[inline(always)]
+    fn linearize<const FUSED: bool>(&self, end_a: Pair, end_b: Pair) -> (Pair, Slopes) {
+        let residual = [
+            dot::<FUSED>(end_a, end_a) - self.squared_lengths[0],
+            dot::<FUSED>(end_b, end_b) - self.squared_lengths[1],
+        ];
+        let (aa, ab) = (dot::<FUSED>(end_a, self.a), dot::<FUSED>(end_a, self.b));
+        let (ba, bb) = (dot::<FUSED>(end_b, self.a), self.mass_ratio * dot::<FUSED>(end_b, self.b));
+        let determinant = fma::<FUSED>(aa, bb, -(ab * ba));
+        (residual, Slopes { adjugate: [[bb, ab], [ba, aa]], r: Lanes::splat(0.5) / determinant })
+    }
+
+    /// `(δ, ε)` by Newton's iteration with fresh slopes for every correction, and the lanes that are found.
+    #[cold]
+    #[inline(never)]
+    fn solve_anew<const FUSED: bool>(&self, wa: Pair, wb: Pair, wanted: LaneMask) -> (Pair, LaneMask) {
+        let mut delta = [Lanes::ZERO; 2];
+        let mut previous = Lanes::ZERO;
+        let (mut pending, mut found) = (wanted, LaneMask::NONE);
+        for _ in 0..MAX_CORRECTIONS {
+            let [pull_a, pull_b] = self.pull::<FUSED>(delta);
+            let end_a = sum(self.a, difference(wa, pull_a));
+            let end_b = sum(self.b, sum(wb, pull_b));
+            let (f, slopes) = self.linearize::<FUSED>(end_a, end_b);
+            let next = sum(delta, slopes.correction::<FUSED>(f));
+            delta = [pending.select(next[0], delta[0]), pending.select(next[1], delta[1])];
+            let size = f[0].abs() + f[1].abs();
+            let done = LaneMask::at_most(size, Lanes::splat(16.0) * self.round_off)
+                .or(LaneMask::at_most(size * size, self.round_off * previous))
+                .and(pending);
+            (found, pending) = (found.or(done), pending.without(done));
+            if !pending.is_any() {
+                break;
+            }
+            previous = size;
+        }
+        (delta, found)
+    }
+
+    /// Takes a step of every pendulum. Returns whether all of them have one; those that have none stay where they were.
+    #[inline(always)]
+    pub fn advance<const FUSED: bool>(&mut self) -> bool {
+        let guess = [0, 1].map(|k: usize| {
+            let [newest, second, third, oldest] = self.multipliers[k];
+            let old = fma::<FUSED>(Lanes::splat(6.0), second, oldest);
+            fma::<FUSED>(Lanes::splat(4.0), newest + third, -old)
+        });
+        let [pull_a, pull_b] = self.pull::<FUSED>(guess);
+        let wa = [self.wa[0] - pull_a[0], self.wa[1] - (self.fall + pull_a[1])];
+        let wb = sum(self.wb, pull_b);
+        let (f, slopes) = self.linearize::<FUSED>(sum(self.a, wa), sum(self.b, wb));
+        let mut delta = slopes.correction::<FUSED>(f);
+        let left = fma::<FUSED>(self.bounds[0], delta[0] * delta[0], self.bounds[1] * (delta[1] * delta[1]));
+        let unsolved = LaneMask::ALL.without(LaneMask::at_most(left, self.round_off));
+        let mut failed = LaneMask::NONE;
+        if unsolved.is_any() {
+            let first = self.pull::<FUSED>(delta);
+            let squares = [dot::<FUSED>(first[0], first[0]), dot::<FUSED>(first[1], first[1])];
+            let correction = slopes.correction::<FUSED>(squares).map(|x| unsolved.select(x, Lanes::ZERO));
+            let second = self.pull::<FUSED>(correction);
+            delta = sum(delta, correction);
+            // What is left now: Q of both corrections together, less Q of the first.
+            let left = |i: usize| {
+                let twice =
+                    [first[i][0] + first[i][0] + second[i][0], first[i][1] + first[i][1] + second[i][1]];
+                dot::<FUSED>(twice, second[i]).abs()
+            };
+            let converged =
+                LaneMask::at_most(left(0), self.round_off).and(LaneMask::at_most(left(1), self.round_off));
+            let wanted = unsolved.without(converged);
+            if wanted.is_any() {
+                let (anew, found) = self.solve_anew::<FUSED>(wa, wb, wanted);
+                delta = [wanted.select(anew[0], delta[0]), wanted.select(anew[1], delta[1])];
+                failed = wanted.without(found);
+            }
+        }
+        let [pull_a, pull_b] = self.pull::<FUSED>(delta);
+        let (wa, wb) = (difference(wa, pull_a), sum(wb, pull_b));
+        let (a, b) = (sum(self.a, wa), sum(self.b, wb));
+
+        // The end of gravity's kick, and the impulses (n₁, n₂) that keep the velocities on the constraints.
+        let wa = [wa[0], wa[1] - self.fall];
+        let rates = [dot::<FUSED>(a, wa), dot::<FUSED>(b, wb)];
+        let cosine = dot::<FUSED>(a, b);
+        let r = Lanes::splat(1.0) / fma::<FUSED>(-cosine, cosine, self.both);
+        let n1 = fma::<FUSED>(self.outer, rates[0], cosine * rates[1]) * r;
+        let n2 = fma::<FUSED>(self.squared_lengths[0], rates[1], cosine * rates[0]) * r;
+        let outer = self.mass_ratio * n2;
+        let along = [n1 * a[0], n1 * a[1]];
+        let wa = [fma::<FUSED>(n2, b[0], wa[0] - along[0]), fma::<FUSED>(n2, b[1], wa[1] - along[1])];
+        let wb = [fma::<FUSED>(-outer, b[0], wb[0] + along[0]), fma::<FUSED>(-outer, b[1], wb[1] + along[1])];
+        let all = (a[0] + a[1]) + (b[0] + b[1]) + ((wa[0] + wa[1]) + (wb[0] + wb[1]));
+        let finite = LaneMask::below(all * Lanes::ZERO, Lanes::splat(1.0));
+        let taken = finite.without(failed);
+        for (history, (guess, delta)) in self.multipliers.iter_mut().zip(guess.into_iter().zip(delta)) {
+            *history = [guess + delta, history[0], history[1], history[2]];
+        }
+        let is_lost = LaneMask::ALL.without(taken).is_any();
+        if is_lost {
+            for (kept, new) in [(&mut self.a, a), (&mut self.b, b), (&mut self.wa, wa), (&mut self.wb, wb)] {
+                *kept = [taken.select(new[0], kept[0]), taken.select(new[1], kept[1])];
+            }
+        } else {
+            (self.a, self.b, self.wa, self.wb) = (a, b, wa, wb);
+        }
+        !is_lost
+    }
+
+    /// Positions of one pendulum, in the scene's coordinates.
+    pub fn q(&self, lane: usize) -> [f64; 4] {
+        let at = |x: Lanes| x.to_array()[lane];
+        let (a, b) = (self.a.map(at), self.b.map(at));
+        [a[0], a[1], a[0] + b[0], a[1] + b[1]]
+    }
+
+    /// Velocities of one pendulum.
+    pub fn v(&self, lane: usize) -> [f64; 4] {
+        let at = |x: Lanes| x.to_array()[lane] / self.h;
+        let (a, b) = (self.wa.map(at), self.wb.map(at));
+        [a[0], a[1], a[0] + b[0], a[1] + b[1]]
+    }
+}
+
+/// So many steps of all groups, in turn, as an operation on lanes.
+struct Steps<'a> {
+    groups: &'a mut [HandWrittenLanes],
+    steps: u64,
+}
+
+impl LaneOperation for Steps<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) -> bool {
+        let mut all = true;
+        for _ in 0..self.steps {
+            for group in self.groups.iter_mut() {
+                all &= group.advance::<FUSED>();
+            }
+        }
+        all
+    }
+}
+
+/// Takes so many steps of all groups, in turn, in the vector instructions of this machine; whether all of them were found.
+pub fn advance_all(groups: &mut [HandWrittenLanes], steps: u64) -> bool {
+    InstructionSet::detect().run(Steps { groups, steps })
+}

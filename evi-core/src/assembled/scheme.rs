@@ -1,0 +1,137 @@
+//! Schemes, prepared for an assembled scene.
+
+use super::implicit::ImplicitStep;
+use super::kicked::KickedStep;
+use super::nodes::Nodes;
+use super::{AssembledState, AssemblyError, PreparedScene};
+use crate::integrator::{Composed, Evi, StepError, Symmetric, Tally};
+use crate::scheme::checked_step_size;
+
+/// A scheme that integrates assembled scenes: [`Evi`] on straight curves, [`Galerkin`](crate::integrator::Galerkin) on polynomials, their symmetric
+/// compositions, and all of these rescued.
+pub trait AssembledScheme {
+    /// Its one-step map.
+    type Step: AssembledStep;
+
+    /// Folds everything that is constant for a run into the one-step map.
+    ///
+    /// # Errors
+    /// [`AssemblyError`] for a scheme that defines no step for this scene.
+    fn prepare(&self, scene: &mut PreparedScene) -> Result<Self::Step, AssemblyError>;
+}
+
+/// A map from the state at `t` to the state at `t + h`.
+pub trait AssembledStep {
+    /// Step size; negative for a map that goes back in time.
+    fn h(&self) -> f64;
+
+    /// Overwrites `state` with the state one step later, and tells `tally` what has happened on the way.
+    ///
+    /// # Errors
+    /// [`StepError`] when there is no such state or it is not found; `state` has not changed then.
+    fn advance(
+        &mut self,
+        scene: &mut PreparedScene,
+        state: &mut AssembledState,
+        tally: &mut impl Tally,
+    ) -> Result<(), StepError>;
+}
+
+/// The one-step map of an [`Evi`].
+pub struct AssembledEvi {
+    h: f64,
+    kind: Kind,
+}
+
+/// How the equations of a step are solved.
+enum Kind {
+    /// For multipliers alone.
+    Kicked(KickedStep),
+    /// For positions and multipliers together.
+    Implicit(ImplicitStep),
+}
+
+impl<const K: usize> AssembledScheme for Evi<K> {
+    type Step = AssembledEvi;
+
+    fn prepare(&self, scene: &mut PreparedScene) -> Result<AssembledEvi, AssemblyError> {
+        let h = checked_step_size(self.step_size())?;
+        let nodes = Nodes::of(self.quadrature());
+        let kind = match KickedStep::new(scene, &nodes, h) {
+            Some(kicked) => Kind::Kicked(kicked),
+            None => {
+                scene.prepare_saddle()?;
+                Kind::Implicit(ImplicitStep::new(scene, &nodes, h))
+            }
+        };
+        Ok(AssembledEvi { h, kind })
+    }
+}
+
+impl AssembledStep for AssembledEvi {
+    fn h(&self) -> f64 {
+        self.h
+    }
+
+    fn advance(
+        &mut self,
+        scene: &mut PreparedScene,
+        state: &mut AssembledState,
+        tally: &mut impl Tally,
+    ) -> Result<(), StepError> {
+        match &mut self.kind {
+            Kind::Kicked(step) => step.advance(scene, state, tally),
+            Kind::Implicit(step) => step.advance(scene, state, tally),
+        }
+    }
+}
+
+/// The one-step map of a composition.
+pub struct AssembledComposed<M> {
+    /// The maps of the stages, each with the time from the start of the step to its own.
+    stages: Vec<(f64, M)>,
+    h: f64,
+    /// The state before the step, in case that a stage fails.
+    before: AssembledState,
+}
+
+impl<B: AssembledScheme + Symmetric, const N: usize> AssembledScheme for Composed<B, N> {
+    type Step = AssembledComposed<B::Step>;
+
+    fn prepare(&self, scene: &mut PreparedScene) -> Result<Self::Step, AssemblyError> {
+        self.check_symmetry()?;
+        let h = self.step_size();
+        let mut stages = Vec::with_capacity(N);
+        for (stage, start) in self.stages() {
+            stages.push((start * h, stage.prepare(scene)?));
+        }
+        Ok(AssembledComposed { stages, h, before: AssembledState::blank(scene.assembly.n_coordinates) })
+    }
+}
+
+impl<M: AssembledStep> AssembledStep for AssembledComposed<M> {
+    fn h(&self) -> f64 {
+        self.h
+    }
+
+    fn advance(
+        &mut self,
+        scene: &mut PreparedScene,
+        state: &mut AssembledState,
+        tally: &mut impl Tally,
+    ) -> Result<(), StepError> {
+        let before = &mut self.before;
+        before.copy_from(state);
+        for (start, stage) in &mut self.stages {
+            // Not what the stages before have added up: their roundings are felt by constraints that move.
+            state.t = before.t + *start;
+            if let Err(error) = stage.advance(scene, state, tally) {
+                scene.space.is_start_known = false;
+                std::mem::swap(state, before);
+                return Err(error);
+            }
+        }
+        state.t = before.t + self.h;
+        Ok(())
+    }
+}

@@ -1,0 +1,57 @@
+//! A scene as a sum of repeated elements: the contract between those who write it, or the compiler that does, and the runtime.
+//!
+//! ```text
+//! L(t, q, v) = Σ_f Σ_e L_f(t, q_{f,e}, v_{f,e})        φ(t, q) = (φ_{f,e}(t, q_{f,e}))
+//! ```
+//!
+//! An element is an ordinary small scene with local coordinates and its own parameters; a family is an element, how often it is repeated, and
+//! where the coordinates of each copy lie among those of the scene. Numbers of bodies are known when a run is prepared.
+
+use crate::system::MechanicalSystem;
+
+/// A scene that is a sum of repeated elements.
+///
+/// Its constraints are those of the families in the order of [`visit_families`](Self::visit_families), element by element. See the
+/// [module](super) for an example.
+pub trait AssembledSystem: Sized {
+    /// Number of coordinates, `n`.
+    fn n_coordinates(&self) -> usize;
+
+    /// The name of a coordinate, for errors and headers.
+    fn coordinate_name(&self, index: usize) -> String {
+        format!("q[{index}]")
+    }
+
+    /// The name of a constraint, for errors and headers.
+    fn constraint_name(&self, index: usize) -> String {
+        format!("constraint[{index}]")
+    }
+
+    /// Shows every family to the visitor, by `visitor.family::<F>()`, in the order of declaration.
+    fn visit_families<V: FamilyVisitor<Self>>(&self, visitor: &mut V);
+}
+
+/// A repeated element of a scene `S`.
+///
+/// A term without an index is a family of one element; a family by two indices numbers its pairs. What a run needs of this is asked once, when it is
+/// prepared.
+pub trait Family<S> {
+    /// What is repeated. Elements have no inputs, and no coordinate of theirs needs inertia where other elements give it some.
+    type Element: MechanicalSystem + 'static;
+
+    /// Number of elements.
+    fn count(system: &S) -> usize;
+
+    /// Element `index` with its parameters.
+    fn element(system: &S, index: usize) -> Self::Element;
+
+    /// Where the coordinates of element `index` lie among those of the scene: different places, each below
+    /// [`n_coordinates`](AssembledSystem::n_coordinates).
+    fn coordinates(system: &S, index: usize) -> <Self::Element as MechanicalSystem>::PerCoordinate<usize>;
+}
+
+/// Sees the families of a scene.
+pub trait FamilyVisitor<S> {
+    /// Sees the next one.
+    fn family<F: Family<S>>(&mut self);
+}

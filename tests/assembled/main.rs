@@ -1,0 +1,6 @@
+//! Scenes of many bodies: against the specialised path, certified digits, and what steps keep.
+
+mod agreement;
+mod kept;
+mod order;
+mod refusals;

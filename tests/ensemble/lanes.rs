@@ -1,0 +1,110 @@
+//! Eight members side by side: the same motion as alone, to round-off of the same steps, and to the last bit in any company.
+
+use evi_core::ensemble::{ByIndex, LaneScheme, Member, Members};
+use evi_core::prelude::*;
+use evi_examples::{Chain5, DoublePendulum, Scene, StiffSpringPendulum};
+use evi_tests::largest_difference;
+
+use crate::members::{COUNT, ends, fraction, pendulum, pendulums};
+
+/// The largest difference between ends in lanes and ends of single runs.
+fn difference<S, F>(scheme: F, members: &impl Members<S>, alone: impl Fn(&Member<S>) -> S, steps: u64) -> f64
+where
+    S: MechanicalSystem,
+    F: LaneScheme<S> + Clone + Sync,
+{
+    let mut largest = 0.0_f64;
+    for row in ends(scheme.clone(), members, steps) {
+        let member = members.member(row[0] as usize);
+        let simulation = Simulation::new(alone(&member), scheme.clone());
+        let mut run = simulation.start(member.q, member.v).expect("a start");
+        for _ in 0..steps {
+            run.advance().expect("a step");
+        }
+        assert_eq!(row[2].to_bits(), run.state().t().to_bits());
+        let n = S::N_COORDINATES;
+        largest = largest.max(largest_difference(&row[3..3 + n], run.state().q().as_ref()));
+        largest = largest.max(largest_difference(&row[3 + n..], run.state().v().as_ref()));
+    }
+    largest
+}
+
+fn pendulum_alone(member: &Member<DoublePendulum>) -> DoublePendulum {
+    let [m1, m2, l1, l2, g] = member.parameters;
+    DoublePendulum { m1, m2, l1, l2, g }
+}
+
+/// A swing of the spring pendulum, whose potential is not quadratic.
+fn springs(count: usize) -> impl Members<StiffSpringPendulum> {
+    ByIndex::new(count, |index| {
+        let system = StiffSpringPendulum::with_stiffness(50.0 + 100.0 * fraction(index, 0.2));
+        Member::of(&system, [1.0 + 0.1 * fraction(index, 0.4), 0.0], [0.0, 0.3])
+    })
+}
+
+/// Chains of five rods under unequal gravity: matrices of five rows, within their band.
+fn chains(count: usize) -> impl Members<Chain5> {
+    ByIndex::new(count, |index| {
+        let system = chain(5.0 + 5.0 * fraction(index, 0.2));
+        let (q, v) = system.standard_motion();
+        Member::of(&system, q, v)
+    })
+}
+
+fn chain(g: f64) -> Chain5 {
+    Chain5 { g, ..Chain5::standard() }
+}
+
+// Bounds: round-off of 200 steps, of which those of a swing amplify some.
+#[test]
+fn midpoint_steps_are_those_of_single_runs() {
+    let found = difference(Evi::midpoint(0.01), &pendulums(COUNT), pendulum_alone, 200);
+    assert!(found < 1e-13, "{found:e}");
+}
+
+#[test]
+fn galerkin_steps_are_those_of_single_runs() {
+    let found = difference(Galerkin::<4>::new(0.05), &pendulums(COUNT), pendulum_alone, 60);
+    assert!(found < 1e-13, "{found:e}");
+}
+
+#[test]
+fn leapfrog_steps_are_those_of_single_runs() {
+    let alone = |member: &Member<StiffSpringPendulum>| {
+        let [m, l, k, g] = member.parameters;
+        StiffSpringPendulum { m, l, k, g }
+    };
+    let found = difference(Evi::trapezoid(0.01), &springs(COUNT), alone, 200);
+    assert!(found < 1e-13, "{found:e}");
+}
+
+#[test]
+fn steps_of_many_constraints_are_those_of_single_runs() {
+    let alone = |member: &Member<Chain5>| {
+        let g = Chain5::PARAMETERS.iter().position(|name| *name == "g").expect("gravity");
+        chain(member.parameters[g])
+    };
+    let found = difference(Evi::midpoint(0.005), &chains(9), alone, 60);
+    assert!(found < 1e-12, "{found:e}");
+}
+
+/// The ends of some members alone, and in the company of all.
+#[track_caller]
+fn check_company(scheme: impl LaneScheme<DoublePendulum> + Clone + Sync, steps: u64) {
+    let all = ends(scheme.clone(), &pendulums(COUNT), steps);
+    for index in [0, 5, 17, COUNT - 1] {
+        let alone = ends(scheme.clone(), &ByIndex::new(1, |_| pendulum(index)), steps);
+        let bits = |row: &[f64]| row[2..].iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+        assert_eq!(bits(&alone[0]), bits(&all[index]), "member {index}");
+    }
+}
+
+#[test]
+fn company_changes_no_bit_of_midpoint_steps() {
+    check_company(Evi::midpoint(0.05), 400);
+}
+
+#[test]
+fn company_changes_no_bit_of_galerkin_steps() {
+    check_company(Galerkin::<4>::new(0.1), 100);
+}
