@@ -1,7 +1,7 @@
 //! The members that are measured: one scene with unequal parameters and starts.
 
 use evi_core::ensemble::{Member, Quantity};
-use evi_examples::{Chain5, DoublePendulum, Scene, SphericalPendulum, StiffSpringPendulum};
+use evi_examples::{DoublePendulum, Scene, SphericalPendulum};
 
 /// A scene with members by index.
 pub(crate) trait Family: Scene {
@@ -49,29 +49,6 @@ impl Family for SphericalPendulum {
     }
 
     fn start(&self, _index: usize) -> ([f64; 3], [f64; 3]) {
-        self.standard_motion()
-    }
-}
-
-impl Family for Chain5 {
-    fn system(index: usize) -> Self {
-        Self { g: 1.0 + 0.1 * fraction(index, 0.1), ..Self::standard() }
-    }
-
-    fn start(&self, _index: usize) -> ([f64; 10], [f64; 10]) {
-        // Hanging, pushed sideways: a swing that stays one.
-        let q = core::array::from_fn(|i| if i % 2 == 0 { 0.0 } else { -(i.div_ceil(2) as f64) * self.l });
-        let v = core::array::from_fn(|i| if i % 2 == 0 { 0.05 * (i + 2) as f64 } else { 0.0 });
-        (q, v)
-    }
-}
-
-impl Family for StiffSpringPendulum {
-    fn system(index: usize) -> Self {
-        Self::with_stiffness(50.0 + 50.0 * fraction(index, 0.1))
-    }
-
-    fn start(&self, _index: usize) -> ([f64; 2], [f64; 2]) {
         self.standard_motion()
     }
 }

@@ -10,7 +10,7 @@ use super::python::{self, PeerError};
 pub struct BatchRow<const N: usize> {
     /// Tolerance.
     pub tolerance: f64,
-    /// The shortest of the repetitions in microseconds, for all trajectories on one core, without compilation.
+    /// Microseconds for all trajectories on one core, without compilation: the sum over the batches of their shortest repetitions.
     pub microseconds: f64,
     /// Trajectories side by side.
     pub batch: usize,
