@@ -35,14 +35,17 @@ fn member(index: usize) -> Member<DoublePendulum> {
     Member::of(&system, start.q, start.v)
 }
 
-/// Positions at the end, trajectory by trajectory, and the seconds that they took: the sum of the shortest times of blocks, whose repetitions are short,
+/// Where trajectories have come to.
+struct Moved {
+    /// Positions at the end, trajectory by trajectory.
+    ends: Vec<[f64; 4]>,
+    /// What they took.
+    seconds: f64,
+}
+
+/// Moves `count` trajectories; the seconds are the sum of the shortest times of blocks, whose repetitions are short,
 /// so that some of them are not disturbed.
-fn moved<F>(
-    scheme: F,
-    steps: u64,
-    count: usize,
-    repetitions: u32,
-) -> Result<(Vec<[f64; 4]>, f64), Box<dyn Error>>
+fn moved<F>(scheme: F, steps: u64, count: usize, repetitions: u32) -> Result<Moved, Box<dyn Error>>
 where
     F: LaneScheme<DoublePendulum> + Sync,
 {
@@ -65,7 +68,7 @@ where
         let rows = gathered.iter().flat_map(|table| table.rows());
         ends.extend(rows.map(|row| [row[3], row[4], row[5], row[6]]));
     }
-    Ok((ends, seconds))
+    Ok(Moved { ends, seconds })
 }
 
 /// Trajectories that are timed together: groups of eight in turn.
@@ -74,7 +77,7 @@ const BLOCK: usize = 32;
 pub(crate) fn all(quick: bool) -> Result<Vec<Row>, Box<dyn Error>> {
     let (count, repetitions) = if quick { (64, 10) } else { (64, 100) };
     // Sixteenth order far below the errors that are compared, but for the round-off that the motion amplifies.
-    let (reference, _) = moved(Galerkin::<8>::new(0.02), 500, count, 1)?;
+    let Moved { ends: reference, .. } = moved(Galerkin::<8>::new(0.02), 500, count, 1)?;
     let error = |ends: &[[f64; 4]]| {
         let distance = |(a, b): (&[f64; 4], &[f64; 4])| {
             a.iter().zip(b).fold(0.0_f64, |largest, (a, b)| largest.max((a - b).abs()))
@@ -84,8 +87,7 @@ pub(crate) fn all(quick: bool) -> Result<Vec<Row>, Box<dyn Error>> {
         errors[count / 2]
     };
     let mut rows = Vec::new();
-    let starts: Vec<([f64; 4], [f64; 4])> =
-        (0..count).map(member).map(|member| (member.q, member.v)).collect();
+    let starts: Vec<_> = (0..count).map(member).map(|member| (member.q, member.v)).collect();
     match heyoka_batch("double_pendulum", &DoublePendulum::UNIT, &starts, HORIZON, &TOLERANCES, repetitions) {
         Ok(found) => rows.extend(found.iter().map(|BatchRow { tolerance, microseconds, ends, batch }| Row {
             method: format!("heyoka, batches of {batch}"),
@@ -97,7 +99,7 @@ pub(crate) fn all(quick: bool) -> Result<Vec<Row>, Box<dyn Error>> {
         Err(error @ PeerError::NotInstalled { .. }) => println!("{error}"),
         Err(error) => return Err(error.into()),
     }
-    let mut add = |method: &str, h: f64, (ends, seconds): (Vec<[f64; 4]>, f64)| {
+    let mut add = |method: &str, h: f64, Moved { ends, seconds }: Moved| {
         rows.push(Row {
             method: method.to_owned(),
             setting: h,

@@ -31,6 +31,9 @@ pub(crate) struct Row {
 /// Trajectories that are moved at once; twice the length of a chunk, so that two threads have one each.
 const TRAJECTORIES: usize = 64;
 
+/// Moves trajectories by so many steps.
+type Take<'a> = dyn Fn(u64) -> Result<f64, Box<dyn Error>> + 'a;
+
 /// A way to move trajectories, to be timed.
 struct Way<'a> {
     method: String,
@@ -38,7 +41,7 @@ struct Way<'a> {
     threads: usize,
     trajectories: usize,
     /// Moves them by so many steps, and returns the largest constraint residual seen.
-    take: Box<dyn Fn(u64) -> Result<f64, Box<dyn Error>> + 'a>,
+    take: Box<Take<'a>>,
 }
 
 /// Steps of the midpoint rule that are timed, and of a Galerkin member.
