@@ -157,10 +157,15 @@ impl<F, X, G> Motion<'_, F, X, G> {
         let instructions = InstructionSet::detect();
         for sample in 0..=self.schedule.samples {
             if sample > 0 {
-                let steps = (sample as u64 - 1) * self.schedule.stride;
-                let (groups, block) = (&mut groups[..], &mut *block);
-                let gathered = &mut *gathered;
-                instructions.run(Steps { motion: self, groups, block, steps, sample: sample - 1, gathered });
+                let (block, gathered) = (&mut *block, &mut *gathered);
+                instructions.run(Steps {
+                    schedule: self.schedule,
+                    h: self.scheme.h(),
+                    section: self.section,
+                    groups: &mut groups,
+                    taken: (sample as u64 - 1) * self.schedule.stride,
+                    attendant: &mut Attendant { motion: self, block, sample: sample - 1, gathered },
+                });
             }
             let is_last = sample == self.schedule.samples;
             for group in &groups {
@@ -243,45 +248,47 @@ impl<F, X, G> Motion<'_, F, X, G> {
     }
 }
 
-/// The steps between two samples, as an operation on lanes.
-struct Steps<'a, 'm, S: MechanicalSystem, F: LaneScheme<S>, X, G: Gather<S>> {
-    motion: &'a Motion<'m, F, X, G>,
-    groups: &'a mut [Group<S, F::Lanes>],
-    block: &'a mut [InLane<S, F::Member>],
+/// The steps between two samples, as an operation on lanes. What is gathered does not enter its type: it is compiled once per scene, scheme and
+/// section, for every set of instructions.
+struct Steps<'a, S: MechanicalSystem, L, X> {
+    schedule: Schedule,
+    h: f64,
+    section: &'a X,
+    groups: &'a mut [Group<S, L>],
     /// Number of steps taken before.
-    steps: u64,
-    sample: usize,
-    gathered: &'a mut Gathered<G::Part>,
+    taken: u64,
+    attendant: &'a mut dyn Attend<S, L>,
 }
 
-impl<S, F, X, G> LaneOperation for Steps<'_, '_, S, F, X, G>
-where
-    S: MechanicalSystem,
-    F: LaneScheme<S>,
-    X: Section<S>,
-    G: Gather<S>,
-{
+/// Who looks after lanes apart from the others: what happens rarely.
+trait Attend<S: MechanicalSystem, L> {
+    /// Takes the step of lanes that were not found together, each by itself and without its past; records those that have no step.
+    fn rescue(&mut self, group: &mut Group<S, L>, failed: LaneMask, steps: u64);
+
+    /// Shows the crossings of lanes in a step from `before`.
+    fn cross(&mut self, group: &mut Group<S, L>, crossed: LaneMask, before: &LaneState<S>);
+}
+
+impl<S: MechanicalSystem, L: LaneMap<S>, X: Section<S>> LaneOperation for Steps<'_, S, L, X> {
     type Output = ();
 
     #[inline(always)]
-    fn run<const FUSED: bool>(mut self) {
-        for step in 0..self.motion.schedule.stride {
-            for place in 0..self.groups.len() {
-                let group = &mut self.groups[place];
+    fn run<const FUSED: bool>(self) {
+        for steps in self.taken..self.taken + self.schedule.stride {
+            for group in self.groups.iter_mut() {
                 if !group.active.is_any() {
                     continue;
                 }
                 let before = if X::EXISTS { Some(group.state.clone()) } else { None };
                 let failed = group.lanes.advance::<FUSED>(&mut group.state, group.active);
                 if failed.is_any() {
-                    self.rescue(place, failed, self.steps + step);
+                    self.attendant.rescue(group, failed, steps);
                 }
-                let group = &mut self.groups[place];
-                group.state.t = self.motion.schedule.time(self.motion.scheme.h(), self.steps + step + 1);
+                group.state.t = self.schedule.time(self.h, steps + 1);
                 if let Some(before) = before {
-                    let crossed = self.motion.section.crossed(&before, &group.state).and(group.active);
+                    let crossed = self.section.crossed(&before, &group.state).and(group.active);
                     if crossed.is_any() {
-                        self.cross(place, crossed, &before);
+                        self.attendant.cross(group, crossed, &before);
                     }
                 }
             }
@@ -289,18 +296,23 @@ where
     }
 }
 
-impl<S, F, X, G> Steps<'_, '_, S, F, X, G>
+/// Looks after the lanes of a block of members.
+struct Attendant<'a, 'm, S: MechanicalSystem, F: LaneScheme<S>, X, G: Gather<S>> {
+    motion: &'a Motion<'m, F, X, G>,
+    block: &'a mut [InLane<S, F::Member>],
+    sample: usize,
+    gathered: &'a mut Gathered<G::Part>,
+}
+
+impl<S, F, X, G> Attend<S, F::Lanes> for Attendant<'_, '_, S, F, X, G>
 where
     S: MechanicalSystem,
     F: LaneScheme<S>,
     X: Section<S>,
     G: Gather<S>,
 {
-    /// Takes the step of lanes that were not found together, each by itself and without its past; records those that have no step.
     #[cold]
-    #[inline(never)]
-    fn rescue(&mut self, place: usize, failed: LaneMask, steps: u64) {
-        let group = &mut self.groups[place];
+    fn rescue(&mut self, group: &mut Group<S, F::Lanes>, failed: LaneMask, steps: u64) {
         for lane in failed.lanes() {
             let Moving { member, mechanics, state } = &mut self.block[group.places[lane]].moving;
             group.state.write(lane, state);
@@ -318,11 +330,8 @@ where
         }
     }
 
-    /// Shows the crossings of lanes.
     #[cold]
-    #[inline(never)]
-    fn cross(&mut self, place: usize, crossed: LaneMask, before: &LaneState<S>) {
-        let group = &mut self.groups[place];
+    fn cross(&mut self, group: &mut Group<S, F::Lanes>, crossed: LaneMask, before: &LaneState<S>) {
         for lane in crossed.lanes() {
             let Moving { member, mechanics, state } = &mut self.block[group.places[lane]].moving;
             let mut start = state.clone();

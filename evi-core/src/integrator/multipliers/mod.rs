@@ -9,9 +9,9 @@ mod careful;
 mod history;
 mod span;
 
-use self::attempt::{Attempt, round_off_of};
 #[cfg(feature = "std")]
 pub(crate) use self::attempt::TRUSTED;
+use self::attempt::{Attempt, round_off_of};
 use self::history::History;
 use self::span::{Span, drift_of, move_by};
 use super::StepError;
