@@ -22,11 +22,13 @@ pub(super) enum Kind<A, B> {
 /// The step of one member of an [`Evi`] ensemble.
 pub struct EviMember<S: MechanicalSystem, F>(Kind<FoldedStep<S, F>, LeapfrogStep<S>>);
 
+/// The steps of eight members, folded.
+type Folded<S, F> = MultiplierLanes<S, FoldedLanes<S, F>>;
+/// The steps of eight members by the trapezoidal rule.
+type Leapfrog<S> = MultiplierLanes<S, LeapfrogLanes<S>>;
+
 /// The steps of eight members of an [`Evi`] ensemble.
 pub struct EviLanes<S: MechanicalSystem, F: Interpolant<S>>(Kind<Folded<S, F>, Leapfrog<S>>);
-
-type Folded<S, F> = MultiplierLanes<S, FoldedLanes<S, F>>;
-type Leapfrog<S> = MultiplierLanes<S, LeapfrogLanes<S>>;
 
 impl<S: MechanicalSystem, const K: usize, F: Interpolant<S> + Clone> LaneScheme<S> for Evi<K, F> {
     type Member = EviMember<S, F>;

@@ -87,8 +87,12 @@ impl<S: MechanicalSystem> LaneState<S> {
         for i in 0..S::N_COORDINATES {
             sum = sum + (q[i] + v[i] + p[i]);
         }
-        let finite = LaneMask::below(sum * Lanes::ZERO, Lanes::splat(1.0));
-        let failed = active.without(finite).or(failed);
+        // Of what is finite this is zero, of all else no number.
+        let vanishing = sum * Lanes::ZERO;
+        let mut failed = failed;
+        if !LaneMask::is_everywhere_at_most(vanishing, Lanes::ZERO) {
+            failed = active.without(LaneMask::at_most(vanishing, Lanes::ZERO)).or(failed);
+        }
         if failed.is_any() {
             let taken = LaneMask::ALL.without(failed);
             blend(taken, &q, &mut self.q);

@@ -22,6 +22,17 @@ impl LaneMask {
         Self(Lanes::new(core::array::from_fn(|lane| if lane < count { 1.0 } else { 0.0 })))
     }
 
+    /// Whether `a ≤ b` in every lane: what is asked before a mask is made, since the answer is a flag, not a vector.
+    #[inline(always)]
+    pub fn is_everywhere_at_most(a: Lanes, b: Lanes) -> bool {
+        let (a, b) = (a.to_array(), b.to_array());
+        let mut all = true;
+        for lane in 0..LANES {
+            all &= a[lane] <= b[lane];
+        }
+        all
+    }
+
     /// Where `a ≤ b`.
     #[inline(always)]
     pub fn at_most(a: Lanes, b: Lanes) -> Self {
@@ -75,7 +86,12 @@ impl LaneMask {
     /// Whether any lane is chosen.
     #[inline(always)]
     pub fn is_any(self) -> bool {
-        self.0.largest() > 0.0
+        let chosen = self.0.to_array();
+        let mut any = false;
+        for lane in 0..LANES {
+            any |= chosen[lane] > 0.0;
+        }
+        any
     }
 
     /// Whether this lane is chosen.
@@ -115,6 +131,8 @@ mod tests {
         assert_eq!(mixed, [1.0, 2.0, 9.0, 9.0, 0.0, -1.0, 9.0, 2.0]);
         assert_eq!(small.without(LaneMask::first(2)).lanes().collect::<Vec<_>>(), [4, 5, 7]);
         assert_eq!(LaneMask::NONE.with(3, true).or(LaneMask::first(1)).lanes().collect::<Vec<_>>(), [0, 3]);
+        assert!(LaneMask::is_everywhere_at_most(Lanes::ZERO, Lanes::splat(0.0)));
+        assert!(!LaneMask::is_everywhere_at_most(x, Lanes::splat(f64::INFINITY)), "there is a NaN");
         assert!(!LaneMask::NONE.is_any() && LaneMask::ALL.and(LaneMask::first(1)).is_any());
     }
 }

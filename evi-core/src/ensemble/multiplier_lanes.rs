@@ -56,6 +56,22 @@ struct Ends<S: MechanicalSystem> {
     pull: S::PerCoordinate<Lanes>,
 }
 
+impl<S: MechanicalSystem> Span<S> {
+    #[inline(always)]
+    fn copy(&self) -> Self {
+        let Self { end, start, drifted, jacobian } = self;
+        Self { end: *end, start: start.clone(), drifted: drifted.clone(), jacobian: jacobian.clone() }
+    }
+}
+
+impl<S: MechanicalSystem> Ends<S> {
+    #[inline(always)]
+    fn copy(&self) -> Self {
+        let Self { q, impulse, pull } = self;
+        Self { q: q.clone(), impulse: impulse.clone(), pull: pull.clone() }
+    }
+}
+
 impl<S: MechanicalSystem, K: LaneKicks<S>> MultiplierLanes<S, K> {
     pub(super) fn new(h: f64, mechanics: [&Mechanics<S>; LANES], members: [&K::Member; LANES]) -> Self {
         let constants = side_by_side(|lane, i| mechanics[lane].constants[i]);
@@ -85,36 +101,29 @@ impl<S: MechanicalSystem, K: LaneKicks<S>> MultiplierLanes<S, K> {
         Ends { q, impulse, pull }
     }
 
-    /// Corrects the predicted impulses; returns the lanes that are solved with what their impulses are then, and those whose prediction is near
-    /// enough to be followed.
+    /// Corrects the predicted impulses; returns the ends that they lead to, and where not all lanes are solved so, those that are, and those whose
+    /// prediction is near enough to be followed.
     #[inline(always)]
     fn attempt<const FUSED: bool>(
         &mut self,
         span: &Span<S>,
         active: LaneMask,
-    ) -> (Ends<S>, LaneMask, LaneMask) {
+    ) -> (Ends<S>, Option<[LaneMask; 2]>) {
         let mut ends = self.end::<FUSED>(span, self.predicted.clone());
         let (first, jacobian) = S::constraint_derivatives(self.slopes.constants(), span.end, &ends.q);
         self.slopes.gram::<_, FUSED>(&jacobian, &self.drift, &span.jacobian, &mut self.chord);
         let mut displacement: S::PerConstraint<Lanes> = nothing();
-        let mut trusted = LaneMask::ALL;
+        let mut are_all_trusted = true;
         for c in 0..S::N_CONSTRAINTS {
             displacement[c] = (self.chord.diagonal(c) * self.predicted[c]).abs();
-            trusted = trusted.and(LaneMask::at_most(first[c].abs(), Lanes::splat(TRUSTED) * displacement[c]));
+            let trusted = Lanes::splat(TRUSTED) * displacement[c];
+            are_all_trusted &= LaneMask::is_everywhere_at_most(first[c].abs(), trusted);
         }
         self.chord.factor::<FUSED>();
         let mut correction = first.clone();
         self.chord.solve::<FUSED>(&mut correction);
-        let solved = if const { S::STRUCTURE.has_quadratic_constraints() } {
+        let unsolved = if const { S::STRUCTURE.has_quadratic_constraints() } {
             let reach = self.slopes.along::<FUSED>(&jacobian, &ends.q);
-            let is_round_off = |left: &S::PerConstraint<Lanes>| {
-                let mut all = LaneMask::ALL;
-                for c in 0..S::N_CONSTRAINTS {
-                    let target = Lanes::splat(newton::TARGET) * reach[c].abs();
-                    all = all.and(LaneMask::at_most(left[c].abs(), target));
-                }
-                all
-            };
             // φ(q − d) − φ(q) + G d = ½ dᵀ φ_qq d, exactly.
             let remainder = |moved: &S::PerCoordinate<Lanes>| {
                 let mut half = S::constraint_curvature(self.slopes.constants(), span.end, &ends.q, moved);
@@ -126,27 +135,29 @@ impl<S: MechanicalSystem, K: LaneKicks<S>> MultiplierLanes<S, K> {
             let mut pull = self.slopes.pull::<FUSED>(&span.jacobian, &correction);
             let mut moved = self.drift.times::<FUSED>(&pull);
             let second = remainder(&moved);
-            let mut solved = is_round_off(&second);
-            let unsolved = active.without(solved);
-            if unsolved.is_any() {
+            let mut unsolved = None;
+            if !is_round_off_everywhere::<S>(&second, &reach) {
+                let wanted = active.without(round_off::<S>(&second, &reach));
                 let mut next = second.clone();
                 self.chord.solve::<FUSED>(&mut next);
                 for c in 0..S::N_CONSTRAINTS {
-                    correction[c] = correction[c] + unsolved.select(next[c], Lanes::ZERO);
+                    correction[c] = correction[c] + wanted.select(next[c], Lanes::ZERO);
                 }
                 pull = self.slopes.pull::<FUSED>(&span.jacobian, &correction);
                 moved = self.drift.times::<FUSED>(&pull);
                 let mut left = remainder(&moved);
                 for c in 0..S::N_CONSTRAINTS {
-                    left[c] = left[c] - second[c];
+                    left[c] = wanted.select(left[c] - second[c], Lanes::ZERO);
                 }
-                solved = solved.or(is_round_off(&left));
+                if !is_round_off_everywhere::<S>(&left, &reach) {
+                    unsolved = Some(active.without(round_off::<S>(&left, &reach)));
+                }
             }
             for i in 0..S::N_COORDINATES {
                 ends.q[i] = ends.q[i] - moved[i];
                 ends.pull[i] = ends.pull[i] + pull[i];
             }
-            solved
+            unsolved
         } else {
             let moved = self.drift.times::<FUSED>(&self.slopes.pull::<FUSED>(&span.jacobian, &correction));
             for i in 0..S::N_COORDINATES {
@@ -164,12 +175,20 @@ impl<S: MechanicalSystem, K: LaneKicks<S>> MultiplierLanes<S, K> {
                 ends.q[i] = ends.q[i] - moved[i];
                 ends.pull[i] = ends.pull[i] + pull[i];
             }
-            predict_round_off::<S>(&second, &first, &displacement)
+            Some(active.without(predict_round_off::<S>(&second, &first, &displacement)))
         };
         for c in 0..S::N_CONSTRAINTS {
             ends.impulse[c] = ends.impulse[c] + correction[c];
         }
-        (ends, solved.and(trusted), trusted)
+        if are_all_trusted && unsolved.is_none() {
+            return (ends, None);
+        }
+        let mut trusted = LaneMask::ALL;
+        for c in 0..S::N_CONSTRAINTS {
+            trusted = trusted.and(LaneMask::at_most(first[c].abs(), Lanes::splat(TRUSTED) * displacement[c]));
+        }
+        let solved = LaneMask::ALL.without(unsolved.unwrap_or(LaneMask::NONE)).and(trusted);
+        (ends, Some([solved, trusted]))
     }
 
     /// Newton's iteration with a fresh matrix for every correction, of the lanes `wanted`: from the impulses of `ends` where they are `trusted`, from
@@ -244,11 +263,47 @@ impl<S: MechanicalSystem, K: LaneKicks<S>> LaneOperation for Iterate<'_, S, K> {
     }
 }
 
-/// Apart from the way that most steps take.
+/// Apart from the way that most steps take; returns the lanes that are found, and the ends.
 #[cold]
 #[inline(never)]
-fn iterate_apart<S: MechanicalSystem, K: LaneKicks<S>>(work: Iterate<'_, S, K>) -> LaneMask {
-    work.map.instructions.run(work)
+fn iterate_apart<S: MechanicalSystem, K: LaneKicks<S>>(
+    map: &mut MultiplierLanes<S, K>,
+    span: Span<S>,
+    mut ends: Ends<S>,
+    wanted: LaneMask,
+    trusted: LaneMask,
+) -> (LaneMask, Ends<S>) {
+    let instructions = map.instructions;
+    let found = instructions.run(Iterate { map, span: &span, ends: &mut ends, wanted, trusted });
+    (found, ends)
+}
+
+/// Whether residuals are round-off of terms as large as `reach`, in every lane.
+#[inline(always)]
+fn is_round_off_everywhere<S: MechanicalSystem>(
+    left: &S::PerConstraint<Lanes>,
+    reach: &S::PerConstraint<Lanes>,
+) -> bool {
+    let mut all = true;
+    for c in 0..S::N_CONSTRAINTS {
+        let target = Lanes::splat(newton::TARGET) * reach[c].abs();
+        all &= LaneMask::is_everywhere_at_most(left[c].abs(), target);
+    }
+    all
+}
+
+/// Where they are.
+#[inline(always)]
+fn round_off<S: MechanicalSystem>(
+    left: &S::PerConstraint<Lanes>,
+    reach: &S::PerConstraint<Lanes>,
+) -> LaneMask {
+    let mut all = LaneMask::ALL;
+    for c in 0..S::N_CONSTRAINTS {
+        let target = Lanes::splat(newton::TARGET) * reach[c].abs();
+        all = all.and(LaneMask::at_most(left[c].abs(), target));
+    }
+    all
 }
 
 /// Where `newton::predicts_round_off` holds for every constraint.
@@ -287,14 +342,18 @@ impl<S: MechanicalSystem, K: LaneKicks<S>> LaneMap<S> for MultiplierLanes<S, K> 
         }
         let (_, jacobian) = S::constraint_derivatives(constants, t, &state.q);
         let span = Span { end: t_end, start: state.q.clone(), drifted, jacobian };
-        let (mut ends, solved, trusted) = self.attempt::<FUSED>(&span, active);
+        let (mut ends, rest) = self.attempt::<FUSED>(&span, active);
         let mut base = self.predicted.clone();
-        let wanted = active.without(solved);
         let mut failed = LaneMask::NONE;
-        if wanted.is_any() {
-            let work = Iterate { map: self, span: &span, ends: &mut ends, wanted, trusted };
-            failed = wanted.without(iterate_apart(work));
-            blend(wanted, &ends.impulse, &mut base);
+        if let Some([solved, trusted]) = rest {
+            let wanted = active.without(solved);
+            if wanted.is_any() {
+                // By copies, so that on the way of most steps nothing lies in memory for this one's sake.
+                let (found, landed) = iterate_apart(self, span.copy(), ends.copy(), wanted, trusted);
+                ends = landed;
+                failed = wanted.without(found);
+                blend(wanted, &ends.impulse, &mut base);
+            }
         }
         let Ends { q, impulse, pull } = ends;
         let mut momentum = kicked;

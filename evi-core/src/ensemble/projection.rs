@@ -31,8 +31,9 @@ pub(super) fn project<S: MechanicalSystem, const FUSED: bool>(
     for i in 0..S::N_COORDINATES {
         energy = moving[i].times_plus::<FUSED>(projected.v[i], energy);
     }
-    let large = LaneMask::below(Lanes::splat(LARGEST_REST) * energy, removed).and(active);
-    if large.is_any() {
+    let allowed = Lanes::splat(LARGEST_REST) * energy;
+    if !LaneMask::is_everywhere_at_most(removed, allowed) {
+        let large = LaneMask::below(allowed, removed).and(active);
         let (again, _) = remove_rest::<S, FUSED>(slopes, legendre, gram, jacobian, &projected.p);
         blend(large, &again.v, &mut projected.v);
         blend(large, &again.p, &mut projected.p);
