@@ -106,7 +106,7 @@ fn instructions(case: usize, with_gradient: bool) -> Option<u64> {
     let output = Command::new("valgrind")
         .args(["--tool=callgrind", "--callgrind-out-file=/dev/null", "--toggle-collect=*counted_*"])
         .arg(std::env::current_exe().ok()?)
-        .args(["--exact", "cost::steps_to_count", "--ignored", "--test-threads=1"])
+        .args(["--exact", "steps_to_count", "--ignored", "--test-threads=1"])
         .env(CASE, format!("{case} {}", u64::from(with_gradient)))
         .output()
         .ok()?;
