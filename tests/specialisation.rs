@@ -148,8 +148,9 @@ impl Visitor for StandardMotions {
         let (largest, Fallbacks { fallbacks }) =
             compare_paths(system, Evi::simpson(S::HORIZON / STEPS_TO_THE_HORIZON), start);
         println!("{}: {largest:.1} ε, {fallbacks} fallbacks", S::NAME);
-        // Round-off of 100 steps: 37 ε measured on the linkage, 156 ε on the top, whose multipliers no past predicts.
-        let bound = if S::NAME == "heavy_top" { 256.0 } else { 64.0 };
+        // Round-off of 100 steps: 37 ε measured on the linkage. The phase of the top sums up what is rounded of its spin: over 50 radians the
+        // paths come to differ by 19 to 406 ε, at 24 spins between 190 and 211 rad/s, as starts do that differ by 2 ε, 16 to 308 ε.
+        let bound = if S::NAME == "heavy_top" { 512.0 } else { 64.0 };
         assert!(largest <= bound, "{}: {largest} ε", S::NAME);
         // The squeezer's elimination would be too long, so that it has the dense one.
         assert_eq!(fallbacks > 0, S::NAME == "andrews_squeezer", "{}: {fallbacks} fallbacks", S::NAME);

@@ -72,25 +72,18 @@ fn compare<S: AssembledSystem + Clone + 'static>(
         let position_error = distance(q, &reference);
         comparison.solutions.push(Solution { bodies, t, method, steps, position_error, microseconds });
     };
-    let members: [(&'static str, u64, u32, Box<dyn Fn(f64) -> Row + '_>); 4] = [
-        ("midpoint", 16, 6, Box::new(|h| specimen.row("midpoint", Evi::midpoint(h)))),
-        (
-            "midpoint_4",
-            4,
-            6,
-            Box::new(|h| specimen.row("midpoint_4", Evi::midpoint(h).composed(Composition::suzuki_4()))),
-        ),
-        (
-            "midpoint_6",
-            4,
-            5,
-            Box::new(|h| specimen.row("midpoint_6", Evi::midpoint(h).composed(Composition::kahan_li_6()))),
-        ),
-        ("galerkin_8", 1, 5, Box::new(|h| specimen.row("galerkin_8", Galerkin::<8>::new(h)))),
-    ];
-    for (method, first, count, row) in &members {
-        for steps in doubled(first * coarsest, *count) {
-            match solve(&row(t / steps as f64), t, repetitions) {
+    let member = |method, h| match method {
+        "midpoint" => specimen.row(method, Evi::midpoint(h)),
+        "midpoint_4" => specimen.row(method, Evi::midpoint(h).composed(Composition::suzuki_4())),
+        "midpoint_6" => specimen.row(method, Evi::midpoint(h).composed(Composition::kahan_li_6())),
+        _ => specimen.row(method, Galerkin::<8>::new(h)),
+    };
+    // With the numbers of steps that each needs.
+    for (method, first, count) in
+        [("midpoint", 16, 6), ("midpoint_4", 4, 6), ("midpoint_6", 4, 5), ("galerkin_8", 1, 5)]
+    {
+        for steps in doubled(first * coarsest, count) {
+            match solve(&member(method, t / steps as f64), t, repetitions) {
                 Ok((q, microseconds)) => add(method, steps, &q, microseconds),
                 Err(failure) => comparison.missing.push(format!("{method} in {steps} steps: {failure}")),
             }

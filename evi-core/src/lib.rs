@@ -48,6 +48,7 @@
 //! | `mpi` | no | ensembles on several processes, by the MPI of the system |
 //! | `source` | no | [`system::MechanicalSystem::SOURCE`] holds the generated code, to read |
 //! | `sparse` | no | `assembled` scenes whose bodies hold each other in large nets: elimination with pivoting by faer |
+//! | `argmin` | no | `sensitivity::Objective` is a cost function with a gradient of the crate argmin |
 //! | `generic` | no | `generic::GenericEvi` for systems of run-time size; [`scalar::Scalar`] for the dual numbers of num-dual |
 
 #![cfg_attr(not(feature = "std"), no_std)]

@@ -41,7 +41,7 @@ struct Options {
 fn main() -> Result<(), Box<dyn Error>> {
     let Options { out, size, to, step } = Options::parse();
     let steps = (to / step).round();
-    if !(steps >= 1.0 && steps < 1e9) {
+    if !(1.0..1e9).contains(&steps) {
         return Err(format!("no number of steps of {step} leads to t = {to}").into());
     }
     let width = size as usize;

@@ -103,7 +103,7 @@ impl Design for Fit {
 
     fn cost(&self, _x: &[f64]) -> impl Cost<PushedPendulum> {
         |steps: u64, state: &State<PushedPendulum>, gradient: &mut StateGradient<PushedPendulum>| {
-            if steps == 0 || steps % STEPS_PER_SAMPLE != 0 {
+            if steps == 0 || !steps.is_multiple_of(STEPS_PER_SAMPLE) {
                 return 0.0;
             }
             let sample = &self.samples[(steps / STEPS_PER_SAMPLE - 1) as usize];

@@ -2,7 +2,7 @@
 //!
 //! In: nothing but a folder. Out: the force, step by step, that brings pendulum and cart from hanging at rest to standing upright at rest where they began, with
 //! little effort; a table of the iterations, and a figure. All of the forces are found together, from the gradient of one number by all of them, which going back
-//! over the steps gives in about the time of four runs.
+//! over the steps gives in the time of a few runs.
 
 #[path = "../plot/mod.rs"]
 mod plot;

@@ -1,5 +1,6 @@
 //! The derivatives of a run by everything that it follows from.
 
+use evi_core::integrator::OfRank;
 use evi_core::prelude::*;
 use evi_core::sensitivity::{
     Course, Differentiable, Differentiate, Direction, ParameterChoice, StateGradient,
@@ -220,6 +221,21 @@ fn motorised<F>(scheme: F) -> Case<MotorisedDoublePendulum, F, 2> {
     Case { system, scheme, start, fields }
 }
 
+/// A pendulum whose rod is written down twice.
+#[derive(MechanicalSystem, Clone, Copy)]
+#[evi(
+    coordinates(x, y),
+    kinetic = 0.5 * m * (der(x).powi(2) + der(y).powi(2)),
+    potential = m * g * y,
+    constraint(rod: x.powi(2) + y.powi(2) == l.powi(2)),
+    constraint(again: 2.0 * (x.powi(2) + y.powi(2)) == 2.0 * l.powi(2)),
+)]
+struct HeldTwice {
+    m: f64,
+    g: f64,
+    l: f64,
+}
+
 const H: f64 = 0.05;
 
 #[test]
@@ -272,6 +288,23 @@ fn a_quadratic_part_integrated_exactly() {
     Case { fields, ..double_pendulum(Evi::trapezoid(H).linearised_at(hanging)) }.check();
     let fields = Vec::new();
     Case { fields, ..double_pendulum(Evi::simpson(H).linearised_at(hanging)) }.check();
+}
+
+#[test]
+fn a_constraint_that_follows_from_another() {
+    let system = OfRank::<HeldTwice, 1>(HeldTwice { m: 1.3, g: 9.81, l: 0.9 });
+    let start = Start { q: [0.9 * 0.6, -0.9 * 0.8], v: [0.8, 0.6] };
+    let fields: Vec<(_, Field<OfRank<HeldTwice, 1>>)> = HeldTwice::PARAMETERS
+        .iter()
+        .map(|&name| -> (_, Field<OfRank<HeldTwice, 1>>) {
+            match name {
+                "m" => (name, |scene| &mut scene.0.m),
+                "g" => (name, |scene| &mut scene.0.g),
+                _ => (name, |scene| &mut scene.0.l),
+            }
+        })
+        .collect();
+    Case { system, scheme: Evi::midpoint(H), start, fields }.check();
 }
 
 #[test]

@@ -11,7 +11,7 @@ const EVERY: u64 = 10;
 #[test]
 fn the_spectrum_of_the_double_pendulum_adds_up_to_zero() {
     const H: f64 = 0.01;
-    const TIME: f64 = 200.0;
+    const TIME: f64 = 100.0;
     let system = DoublePendulum::UNIT;
     let start = system.at_angles(2.0, 2.5);
     let simulation = Simulation::new(system, Evi::midpoint(H));
@@ -21,8 +21,8 @@ fn the_spectrum_of_the_double_pendulum_adds_up_to_zero() {
     let rate = run.liouville_rate().expect("an even number of vectors");
     println!("{exponents:?}, sum {rate:e}");
     assert!(exponents[0] > 1.0, "chaotic: {exponents:?}");
-    assert!(exponents[1].abs() < 0.1 && exponents[2].abs() < 0.1, "{exponents:?}");
-    assert!((exponents[0] + exponents[3]).abs() < 0.05 && (exponents[1] + exponents[2]).abs() < 0.05);
+    assert!(exponents[1].abs() < 0.2 && exponents[2].abs() < 0.2, "{exponents:?}");
+    assert!((exponents[0] + exponents[3]).abs() < 0.1 && (exponents[1] + exponents[2]).abs() < 0.1);
     assert!(rate.abs() <= 2.0 * f64::EPSILON / H, "{rate:e}");
 }
 

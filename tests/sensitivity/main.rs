@@ -1,7 +1,6 @@
 //! Derivatives of runs: forward against central differences of the runs themselves, backwards against forward, both on the structures of `L`, of the
-//! constraints and of the forces that steps branch on; what the tangent map keeps; what a gradient costs; what is refused.
+//! constraints and of the forces that steps branch on; what the tangent map keeps; what is refused.
 
-mod cost;
 mod derivatives;
 mod exponents;
 mod refusals;

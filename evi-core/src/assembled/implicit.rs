@@ -38,6 +38,11 @@ impl ImplicitStep {
         Self { h, nodes: nodes.clone(), sags: History::none(scene.assembly.n_coordinates) }
     }
 
+    /// Drops the past.
+    pub(super) fn forget(&mut self) {
+        self.sags.forget();
+    }
+
     /// Takes the step.
     pub(super) fn advance(
         &mut self,

@@ -58,6 +58,11 @@ impl KickedStep {
         Some(Self { h, nodes: nodes.clone(), kicks, impulses })
     }
 
+    /// Drops the past.
+    pub(super) fn forget(&mut self) {
+        self.impulses.forget();
+    }
+
     /// Takes the step.
     pub(super) fn advance(
         &mut self,

@@ -38,6 +38,10 @@ impl<M: AssembledStep> AssembledStep for AssembledRescued<M> {
         self.whole.h()
     }
 
+    fn forget(&mut self) {
+        self.whole.forget();
+    }
+
     fn advance(
         &mut self,
         scene: &mut PreparedScene,
@@ -66,8 +70,11 @@ impl<M: AssembledStep> AssembledRescued<M> {
     ) -> Result<(), StepError> {
         let (start, h) = (state.t, self.whole.h());
         self.before.copy_from(state);
+        self.whole.forget();
         for (index, map) in self.parts.iter_mut().enumerate() {
             let n = n_parts(index);
+            // What they know is of another rescue.
+            map.forget();
             let is_taken = (0..n).all(|part| {
                 // Not what the parts before have added up: their roundings are felt by constraints that move.
                 state.t = start + h * (part as f64 / n as f64);

@@ -25,6 +25,9 @@ pub trait AssembledStep {
     /// Step size; negative for a map that goes back in time.
     fn h(&self) -> f64;
 
+    /// Drops what the last steps let expect of the next one, which does not begin where they have ended.
+    fn forget(&mut self);
+
     /// Overwrites `state` with the state one step later, and tells `tally` what has happened on the way.
     ///
     /// # Errors
@@ -73,6 +76,13 @@ impl AssembledStep for AssembledEvi {
         self.h
     }
 
+    fn forget(&mut self) {
+        match &mut self.kind {
+            Kind::Kicked(step) => step.forget(),
+            Kind::Implicit(step) => step.forget(),
+        }
+    }
+
     fn advance(
         &mut self,
         scene: &mut PreparedScene,
@@ -112,6 +122,10 @@ impl<B: AssembledScheme + Symmetric, const N: usize> AssembledScheme for Compose
 impl<M: AssembledStep> AssembledStep for AssembledComposed<M> {
     fn h(&self) -> f64 {
         self.h
+    }
+
+    fn forget(&mut self) {
+        self.stages.iter_mut().for_each(|(_, stage)| stage.forget());
     }
 
     fn advance(

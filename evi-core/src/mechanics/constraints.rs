@@ -98,6 +98,7 @@ impl<S: MechanicalSystem> Mechanics<S> {
     }
 
     /// The largest `|residual_c|` as a share of `Σᵢ |G_ci| rᵢ`, `rᵢ ≥ 0`; 0 where both are, NaN where either is no number.
+    #[cfg(feature = "std")]
     pub(crate) fn share_beside(
         &self,
         jacobian: &S::PerJacobianEntry<f64>,

@@ -132,7 +132,9 @@ pub use instruction_set::{InstructionSet, LaneOperation};
 pub use lanes::{LANES, Lanes};
 #[cfg(feature = "std")]
 pub(crate) use rates::Rates;
-pub(crate) use tangent::{Rate, Tangent};
+#[cfg(feature = "std")]
+pub(crate) use tangent::Rate;
+pub(crate) use tangent::Tangent;
 
 #[cfg(test)]
 mod tests {

@@ -95,7 +95,7 @@ impl<S: MechanicalSystem> Matrix<S> {
     }
 }
 
-/// The step from `start` to `end`, with the impulses of the constraints at both.
+/// The step from `start` to `end`, with the impulse of the constraints at its start.
 pub(super) fn noted<S: MechanicalSystem>(
     action: &impl PointAction<S, 1>,
     legendre: Option<&ConstantLegendre<S>>,
@@ -103,16 +103,13 @@ pub(super) fn noted<S: MechanicalSystem>(
     end: &State<S>,
 ) -> Result<TakenStep<S, 1>, DerivativeError> {
     let differences = [Array::from_fn(|i| end.q[i] - start.q[i])];
+    let [departing, arriving] = action.end_momenta(&start, &differences);
     let mut impulses = [Array::from_fn(|_| 0.0)];
-    let mut removed = Array::from_fn(|_| 0.0);
     if S::N_CONSTRAINTS > 0 {
-        let [departing, arriving] = action.end_momenta(&start, &differences);
         let balance = Array::from_fn(|i| start.p[i] + departing[i]);
         impulses = [Landing::new(action.scene(), legendre, &start)?.impulse(&balance)];
-        let balance = Array::from_fn(|i| arriving[i] - end.p[i]);
-        removed = Landing::new(action.scene(), legendre, end)?.impulse(&balance);
     }
-    Ok(TakenStep { start, end: end.clone(), differences, impulses, removed })
+    Ok(TakenStep { start, end: end.clone(), differences, impulses, arriving })
 }
 
 /// Moves vectors over a step whose points are its ends.
@@ -171,9 +168,9 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> Differentiable<S> f
         self.advance(&mut end, tally)?;
         let start = state.clone();
         let taken = if let Some(folded) = self.folded() {
-            note_kicks(folded, OneStep::mechanics(self), start, &end)?
+            note_kicks(folded, OneStep::mechanics(self), start, &end)
         } else if let Some(leapfrog) = self.leapfrog() {
-            note_kicks(leapfrog, OneStep::mechanics(self), start, &end)?
+            note_kicks(leapfrog, OneStep::mechanics(self), start, &end)
         } else {
             noted(&OnNodes(self.action()), self.legendre(), start, &end)?
         };

@@ -1,6 +1,5 @@
 //! Derivatives of Galerkin steps: of all points at once.
 
-use super::landing::Landing;
 use super::nodes::{NodeAction, OnNodes};
 use super::points::{PerPoint, PointAction, StepDerivative, TakenStep};
 use super::{Backwards, DerivativeError, Differentiable, StateGradient, StateTangent};
@@ -90,14 +89,9 @@ impl<S: MechanicalSystem, F: NodalCurves<S>, const K: usize> Differentiable<S> f
         }
         let h = action.h();
         let impulses = core::array::from_fn(|a| Array::from_fn(|c| impulses[a][c] / h));
-        let mut removed = Array::from_fn(|_| 0.0);
-        if S::N_CONSTRAINTS > 0 {
-            let [_, arriving] = OnNodes(action).end_momenta(&start, &differences);
-            let balance = Array::from_fn(|i| arriving[i] - end.p[i]);
-            removed = Landing::new(&action.mechanics, None, &end)?.impulse(&balance);
-        }
+        let [_, arriving] = OnNodes(action).end_momenta(&start, &differences);
         *state = end.clone();
-        Ok(TakenStep { start, end, differences, impulses, removed })
+        Ok(TakenStep { start, end, differences, impulses, arriving })
     }
 
     fn push_forward(

@@ -25,21 +25,18 @@ pub(super) fn note_kicks<S: MechanicalSystem, F: KickDriftKick<S>>(
     mechanics: &Mechanics<S>,
     start: State<S>,
     end: &State<S>,
-) -> Result<TakenStep<S, 1>, DerivativeError> {
+) -> TakenStep<S, 1> {
     let differences = [Array::from_fn(|i| end.q[i] - start.q[i])];
-    let impulse = step.last_impulse().clone();
-    let mut removed = Array::from_fn(|_| 0.0);
+    let (free, impulse) = (step.free(), step.last_impulse().clone());
+    let kick = free.start_kick(mechanics, start.t, &start.q);
+    let mut half_way = S::PerCoordinate::<f64>::from_fn(|i| start.p[i] + kick[i]);
     if S::N_CONSTRAINTS > 0 {
-        let free = step.free();
-        let kick = free.start_kick(mechanics, start.t, &start.q);
-        let mut momentum = S::PerCoordinate::<f64>::from_fn(|i| start.p[i] + kick[i]);
         let (_, jacobian) = S::constraint_derivatives(&mechanics.constants, start.t, &start.q);
-        mechanics.subtract_constraint_force(jacobian.as_ref(), impulse.as_ref(), momentum.as_mut());
-        let kick = free.end_kick(mechanics, end.t, &end.q);
-        let balance = Array::from_fn(|i| momentum[i] + kick[i] - end.p[i]);
-        removed = Landing::new(mechanics, Some(free.legendre()), end)?.impulse(&balance);
+        mechanics.subtract_constraint_force(jacobian.as_ref(), impulse.as_ref(), half_way.as_mut());
     }
-    Ok(TakenStep { start, end: end.clone(), differences, impulses: [impulse], removed })
+    let kick = free.end_kick(mechanics, end.t, &end.q);
+    let arriving = Array::from_fn(|i| half_way[i] + kick[i]);
+    TakenStep { start, end: end.clone(), differences, impulses: [impulse], arriving }
 }
 
 /// Factors of `G D Gᵀ` with `G` at one end from the left and at the other from the right.
@@ -71,8 +68,9 @@ pub(super) fn push_over_kicks<S: MechanicalSystem, F: KickDriftKick<S>>(
     step: &TakenStep<S, 1>,
     tangents: &mut [StateTangent<S>],
 ) -> Result<(), DerivativeError> {
-    let TakenStep { start, end, impulses: [impulse], removed, .. } = step;
+    let TakenStep { start, end, impulses: [impulse], arriving, .. } = step;
     let landing = Landing::new(mechanics, Some(free.legendre()), end)?;
+    let removed = landing.removed(arriving);
     let (_, at_start) = S::constraint_derivatives(&mechanics.constants, start.t, &start.q);
     let at_end = landing.jacobian();
     let multipliers = if S::N_CONSTRAINTS > 0 {
@@ -119,7 +117,7 @@ pub(super) fn push_over_kicks<S: MechanicalSystem, F: KickDriftKick<S>>(
                 arriving[i] += rates.others[0][i];
             }
         }
-        let Moved { v, p } = landing.forward(tangent.parts(), removed, &q, &arriving);
+        let Moved { v, p } = landing.forward(tangent.parts(), &removed, &q, &arriving);
         (tangent.q, tangent.v, tangent.p) = (q, v, p);
     }
     Ok(())
@@ -134,10 +132,11 @@ pub(super) fn pull_over_kicks<S: MechanicalSystem, F: KickDriftKick<S>>(
     Backwards(seeds): &Backwards<'_, S>,
     gradient: &mut StateGradient<S>,
 ) -> Result<(), DerivativeError> {
-    let TakenStep { start, end, impulses: [impulse], removed, .. } = step;
+    let TakenStep { start, end, impulses: [impulse], arriving, .. } = step;
     let seeds: &Seeds<S> = seeds;
     let landing = Landing::new(mechanics, Some(free.legendre()), end)?;
-    let by_arriving = landing.backward(seeds, removed, gradient);
+    let removed = landing.removed(arriving);
+    let by_arriving = landing.backward(seeds, &removed, gradient);
     let mut by_drift = free.end_kick_product(mechanics, end.t, &end.q, &by_arriving);
     for i in 0..S::N_COORDINATES {
         by_drift[i] += gradient.q[i];

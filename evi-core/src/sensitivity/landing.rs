@@ -71,6 +71,11 @@ impl<'a, S: MechanicalSystem> Landing<'a, S> {
         &self.jacobian
     }
 
+    /// `N`: the impulse that took `p⁻` to the momentum of the state.
+    pub(super) fn removed(&self, arriving: &S::PerCoordinate<f64>) -> S::PerConstraint<f64> {
+        self.impulse(&Array::from_fn(|i| arriving[i] - self.state.p[i]))
+    }
+
     /// The impulse `x` with `Gᵀ x = momentum`, which exists.
     pub(super) fn impulse(&self, momentum: &S::PerCoordinate<f64>) -> S::PerConstraint<f64> {
         if S::N_CONSTRAINTS == 0 {

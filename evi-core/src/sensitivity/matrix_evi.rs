@@ -88,7 +88,7 @@ impl<S: MechanicalSystem, const K: usize> Differentiable<S> for MatrixEviStep<S,
         let (start, mut end) = (state.clone(), state.clone());
         self.advance(&mut end, tally)?;
         let taken = match self.form() {
-            Form::Impulse { step, .. } => note_kicks(step, self.mechanics(), start, &end)?,
+            Form::Impulse { step, .. } => note_kicks(step, self.mechanics(), start, &end),
             Form::General(action) => {
                 action.check_matrix()?;
                 noted(action, None, start, &end)?

@@ -42,7 +42,7 @@ impl<D: Design> Objective<D> {
         self.0.simulation(x).cost_of(&self.0.course(x), &self.0.cost(x))
     }
 
-    /// The cost and its gradient: about four runs.
+    /// The cost and its gradient: some runs (see [`Simulation::gradient_of`]).
     ///
     /// # Errors
     /// As for [`value`](Self::value), and where a step has no derivative.

@@ -65,8 +65,8 @@ pub struct TakenStep<S: MechanicalSystem, const A: usize> {
     pub(super) differences: PerPoint<S, A>,
     /// `Λ_a`, from `a = 0` on.
     pub(super) impulses: [S::PerConstraint<f64>; A],
-    /// `N`: what the projection at the end removed.
-    pub(super) removed: S::PerConstraint<f64>,
+    /// `p⁻`.
+    pub(super) arriving: S::PerCoordinate<f64>,
 }
 
 /// Vectors by point, the first one included.
@@ -100,6 +100,8 @@ pub(super) struct StepDerivative<'a, S: MechanicalSystem, N, const A: usize> {
     action: &'a N,
     step: &'a TakenStep<S, A>,
     landing: Landing<'a, S>,
+    /// `N`: what the projection at the end removed.
+    removed: S::PerConstraint<f64>,
 }
 
 impl<'a, S: MechanicalSystem, N: PointAction<S, A>, const A: usize> StepDerivative<'a, S, N, A> {
@@ -108,7 +110,9 @@ impl<'a, S: MechanicalSystem, N: PointAction<S, A>, const A: usize> StepDerivati
         legendre: Option<&'a ConstantLegendre<S>>,
         step: &'a TakenStep<S, A>,
     ) -> Result<Self, DerivativeError> {
-        Ok(Self { action, step, landing: Landing::new(action.scene(), legendre, &step.end)? })
+        let landing = Landing::new(action.scene(), legendre, &step.end)?;
+        let removed = landing.removed(&step.arriving);
+        Ok(Self { action, step, landing, removed })
     }
 
     /// Moves a vector at the start of the step to its end; `solve` overwrites right-hand sides with the solution of `K x = b`.
@@ -129,7 +133,7 @@ impl<'a, S: MechanicalSystem, N: PointAction<S, A>, const A: usize> StepDerivati
         }
         let rates = self.action.momentum_rates(self.step, tangent, &moved);
         let end = &moved.others[A - 1];
-        let Moved { v, p } = self.landing.forward(tangent.parts(), &self.step.removed, end, rates.get(A));
+        let Moved { v, p } = self.landing.forward(tangent.parts(), &self.removed, end, rates.get(A));
         tangent.q = end.clone();
         (tangent.v, tangent.p) = (v, p);
     }
@@ -171,7 +175,7 @@ impl<'a, S: MechanicalSystem, N: PointAction<S, A>, const A: usize> StepDerivati
         solve: impl FnOnce(&mut Blocks<S, A>),
     ) {
         let TakenStep { start, impulses, .. } = self.step;
-        let by_arriving = self.landing.backward(seeds, &self.step.removed, gradient);
+        let by_arriving = self.landing.backward(seeds, &self.removed, gradient);
         let mut along = Points::<S, A>::zero();
         along.others[A - 1] = by_arriving;
         let mut by_points = self.action.products(self.step, seeds, &along);

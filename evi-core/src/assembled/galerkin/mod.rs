@@ -43,6 +43,10 @@ impl<const K: usize> AssembledStep for AssembledGalerkin<K> {
         self.h
     }
 
+    fn forget(&mut self) {
+        self.nodes.forget();
+    }
+
     fn advance(
         &mut self,
         scene: &mut PreparedScene,

@@ -1,0 +1,153 @@
+//! Loops over the kernels of all elements of a family, for numbers and for lanes.
+
+use super::repeated::{Element, Repeated};
+use crate::array::Array;
+use crate::scalar::{LaneOperation, Lanes, Scalar};
+use crate::system::{Entry, MechanicalSystem};
+
+/// Adds `∂L/∂q + f` of all elements; at rest where no velocity is given.
+#[inline(always)]
+pub(super) fn add_force<E: MechanicalSystem, T: Scalar>(
+    elements: &[Element<E>],
+    (t, q, v): (T, &[T], Option<&[T]>),
+    force: &mut [T],
+) {
+    let zero = T::from_f64(0.0);
+    for element in elements {
+        let constants = element.constants();
+        let q = element.gather(q);
+        let v = match v {
+            Some(v) if Repeated::<E>::FORCE_IS_ON_V => element.gather(v),
+            _ => E::PerCoordinate::<T>::filled(zero),
+        };
+        let mut local = E::lagrangian_gradient(&constants, t, &q, &v).force;
+        if E::STRUCTURE.forces.exist() {
+            let added = E::forces(&constants, t, &q, &v, &E::PerInput::<T>::filled(zero));
+            for &i in E::STRUCTURE.forces.forced {
+                local[i] = local[i] + added[i];
+            }
+        }
+        element.scatter(&local, force);
+    }
+}
+
+#[inline(always)]
+pub(super) fn constraints<E: MechanicalSystem, T: Scalar>(
+    elements: &[Element<E>],
+    t: T,
+    q: &[T],
+    values: &mut [T],
+) {
+    if E::N_CONSTRAINTS == 0 {
+        return;
+    }
+    for (element, values) in elements.iter().zip(values.chunks_exact_mut(E::N_CONSTRAINTS)) {
+        values.copy_from_slice(E::constraints(&element.constants(), t, &element.gather(q)).as_ref());
+    }
+}
+
+#[inline(always)]
+pub(super) fn constraint_derivatives<E: MechanicalSystem, T: Scalar>(
+    elements: &[Element<E>],
+    (t, q): (T, &[T]),
+    values: &mut [T],
+    slopes: &mut [T],
+    mut rates: Option<&mut [T]>,
+) {
+    if E::N_CONSTRAINTS == 0 {
+        return;
+    }
+    let entries: &[Entry] = E::STRUCTURE.jacobian.q;
+    for (index, element) in elements.iter().enumerate() {
+        let constants = element.constants();
+        let (value, varying) = E::constraint_derivatives(&constants, t, &element.gather(q));
+        let first = index * E::N_CONSTRAINTS;
+        values[first..first + E::N_CONSTRAINTS].copy_from_slice(value.as_ref());
+        let slopes = &mut slopes[index * entries.len()..(index + 1) * entries.len()];
+        for (slope, entry) in slopes.iter_mut().zip(entries) {
+            *slope = entry.value(constants.as_ref(), varying.as_ref());
+        }
+        if let Some(rates) = rates.as_deref_mut() {
+            let rates = &mut rates[first..first + E::N_CONSTRAINTS];
+            rates.fill(T::from_f64(0.0));
+            for entry in E::STRUCTURE.jacobian.t {
+                rates[entry.row] = rates[entry.row] + entry.value(constants.as_ref(), varying.as_ref());
+            }
+        }
+    }
+}
+
+/// Subtracts `Gᵀ x` of all elements.
+#[inline(always)]
+fn subtract_pull<E: MechanicalSystem, const FUSED: bool>(
+    elements: &[Element<E>],
+    (t, q): (Lanes, &[Lanes]),
+    x: &[Lanes],
+    force: &mut [Lanes],
+) {
+    for (index, element) in elements.iter().enumerate() {
+        let constants = element.constants();
+        let (_, varying) = E::constraint_derivatives(&constants, t, &element.gather(q));
+        let first = index * E::N_CONSTRAINTS;
+        for entry in E::STRUCTURE.jacobian.q {
+            let slope = entry.value(constants.as_ref(), varying.as_ref());
+            let place = element.places[entry.col] as usize;
+            force[place] = (-slope).times_plus::<FUSED>(x[first + entry.row], force[place]);
+        }
+    }
+}
+
+/// The pull of the constraints of all elements, as an operation on lanes.
+pub(super) struct SubtractPull<'a, E: MechanicalSystem> {
+    pub(super) elements: &'a [Element<E>],
+    pub(super) at: (Lanes, &'a [Lanes]),
+    pub(super) x: &'a [Lanes],
+    pub(super) force: &'a mut [Lanes],
+}
+
+impl<E: MechanicalSystem> LaneOperation for SubtractPull<'_, E> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        subtract_pull::<E, FUSED>(self.elements, self.at, self.x, self.force);
+    }
+}
+
+/// Forces of all elements, as an operation on lanes.
+pub(super) struct AddForce<'a, E: MechanicalSystem> {
+    pub(super) elements: &'a [Element<E>],
+    pub(super) at: (Lanes, &'a [Lanes], Option<&'a [Lanes]>),
+    pub(super) force: &'a mut [Lanes],
+}
+
+impl<E: MechanicalSystem> LaneOperation for AddForce<'_, E> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        add_force::<E, Lanes>(self.elements, self.at, self.force);
+    }
+}
+
+/// Constraints of all elements, with slopes where they are asked for, as an operation on lanes.
+pub(super) struct Constraints<'a, E: MechanicalSystem> {
+    pub(super) elements: &'a [Element<E>],
+    pub(super) at: (Lanes, &'a [Lanes]),
+    pub(super) values: &'a mut [Lanes],
+    pub(super) slopes: Option<&'a mut [Lanes]>,
+}
+
+impl<E: MechanicalSystem> LaneOperation for Constraints<'_, E> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        match self.slopes {
+            Some(slopes) => {
+                constraint_derivatives::<E, Lanes>(self.elements, self.at, self.values, slopes, None)
+            }
+            None => constraints::<E, Lanes>(self.elements, self.at.0, self.at.1, self.values),
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! The elements of one family, prepared: their constants and places on the heap, and loops over their kernels.
+//!
+//! What is known of a scene's elements at compile time ends here: above, a family is a [`Elements`], and a run is the same code for every scene.
+
+mod loops;
+mod repeated;
+
+pub(super) use repeated::Repeated;
+
+use super::Point;
+use crate::scalar::{InstructionSet, Lanes};
+use crate::system::Structure;
+
+/// A family whose kernels add to vectors of the whole scene.
+pub(super) trait Elements {
+    /// What is known of one element.
+    fn structure(&self) -> &'static Structure;
+
+    /// Number of elements.
+    fn count(&self) -> usize;
+
+    /// Number of coordinates of an element.
+    fn n_coordinates(&self) -> usize;
+
+    /// Number of constraints of an element.
+    fn n_constraints(&self) -> usize;
+
+    /// Where a coordinate of an element lies.
+    fn place(&self, element: usize, coordinate: usize) -> usize;
+
+    /// The first parameter that is not finite: its element, name and value.
+    fn parameter_that_is_not_finite(&self) -> Option<(usize, &'static str, f64)>;
+
+    /// `Σ v · ∂L/∂v − L`.
+    fn energy(&self, at: Point<'_>) -> f64;
+
+    /// Adds `∂L/∂q + f` and `∂L/∂v`.
+    fn add_gradient(&self, at: Point<'_>, force: &mut [f64], momentum: &mut [f64]);
+
+    /// Adds `∂L/∂q + f`.
+    fn add_force(&self, at: Point<'_>, force: &mut [f64]);
+
+    /// Adds the second derivatives of `L` and `f`, each times its weight, to `entries`, at the `places` that follow each other as
+    /// [`for_each_second_derivative`] does.
+    fn add_second_derivatives(
+        &self,
+        at: Point<'_>,
+        weights: &SecondWeights,
+        places: &[u32],
+        entries: &mut [f64],
+    );
+
+    /// Overwrites `φ`, the nonzero slopes `∂φ/∂q` of its pattern, and `∂φ/∂t` of this family.
+    fn constraint_derivatives(
+        &self,
+        t: f64,
+        q: &[f64],
+        values: &mut [f64],
+        slopes: &mut [f64],
+        rates: &mut [f64],
+    );
+
+    /// Overwrites `φ` of this family.
+    fn constraints(&self, t: f64, q: &[f64], values: &mut [f64]);
+
+    /// Overwrites `γ = vᵀ φ_qq v + 2 φ_qt v + φ_tt` of this family.
+    fn curvature(&self, at: Point<'_>, values: &mut [f64]);
+
+    /// [`add_force`](Self::add_force) at a node per lane.
+    fn add_lane_force(
+        &self,
+        instructions: InstructionSet,
+        t: Lanes,
+        q: &[Lanes],
+        v: Option<&[Lanes]>,
+        force: &mut [Lanes],
+    );
+
+    /// [`constraints`](Self::constraints) at a node per lane.
+    fn lane_constraints(&self, instructions: InstructionSet, t: Lanes, q: &[Lanes], values: &mut [Lanes]);
+
+    /// [`constraint_derivatives`](Self::constraint_derivatives) at a node per lane, without those by time.
+    fn lane_constraint_derivatives(
+        &self,
+        instructions: InstructionSet,
+        t: Lanes,
+        q: &[Lanes],
+        values: &mut [Lanes],
+        slopes: &mut [Lanes],
+    );
+
+    /// Subtracts `Gᵀ x` from `force` at a node per lane.
+    fn subtract_lane_pull(
+        &self,
+        instructions: InstructionSet,
+        t: Lanes,
+        q: &[Lanes],
+        x: &[Lanes],
+        force: &mut [Lanes],
+    );
+}
+
+/// What second derivatives are multiplied with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct SecondWeights {
+    /// `∂²L/∂v²`.
+    pub(super) vv: f64,
+    /// `∂²L/∂v∂q`, row of `v`.
+    pub(super) vq: f64,
+    /// `∂²L/∂q∂v`, row of `q`.
+    pub(super) qv: f64,
+    /// `∂²L/∂q²`.
+    pub(super) qq: f64,
+    /// `∂f/∂q`.
+    pub(super) fq: f64,
+    /// `∂f/∂v`.
+    pub(super) fv: f64,
+}
+
+/// Calls `visit(row, col)` for every number that second derivatives of an element add to a matrix over coordinates.
+pub(super) fn for_each_second_derivative(structure: &Structure, mut visit: impl FnMut(usize, usize)) {
+    for block in [structure.hessian.vv, structure.hessian.qq] {
+        for entry in block {
+            visit(entry.row, entry.col);
+            if entry.row != entry.col {
+                visit(entry.col, entry.row);
+            }
+        }
+    }
+    for entry in structure.hessian.vq {
+        visit(entry.row, entry.col);
+        visit(entry.col, entry.row);
+    }
+    for entry in structure.forces.q.iter().chain(structure.forces.v) {
+        visit(entry.row, entry.col);
+    }
+}
+
+/// How many numbers that are.
+pub(super) fn n_second_derivatives(structure: &Structure) -> usize {
+    let mut count = 0;
+    for_each_second_derivative(structure, |_, _| count += 1);
+    count
+}

@@ -1,0 +1,234 @@
+//! A family of elements of one type.
+
+use super::super::Point;
+use super::loops::{self, AddForce, Constraints, SubtractPull};
+use super::{Elements, SecondWeights};
+use crate::array::Array;
+use crate::scalar::{InstructionSet, Lanes, Scalar};
+use crate::system::{MechanicalSystem, Structure};
+
+/// One element: its constants, and where its coordinates lie.
+pub(super) struct Element<E: MechanicalSystem> {
+    pub(super) constants: E::PerConstant<f64>,
+    pub(super) places: E::PerCoordinate<u32>,
+}
+
+/// The elements of a family.
+pub(in super::super) struct Repeated<E: MechanicalSystem> {
+    elements: Vec<Element<E>>,
+    broken: Option<(usize, &'static str, f64)>,
+}
+
+impl<E: MechanicalSystem> Repeated<E> {
+    const HAS_NO_INPUTS: () = assert!(E::N_INPUTS == 0, "elements of an assembled scene have no inputs");
+
+    pub(in super::super) fn new(elements: impl Iterator<Item = (E, E::PerCoordinate<usize>)>) -> Self {
+        let () = Self::HAS_NO_INPUTS;
+        let mut broken = None;
+        let prepare = |(index, (element, places)): (usize, (E, E::PerCoordinate<usize>))| {
+            let parameters = element.parameters();
+            for (name, &value) in E::PARAMETERS.iter().zip(parameters.as_ref()) {
+                if broken.is_none() && !value.is_finite() {
+                    broken = Some((index, *name, value));
+                }
+            }
+            Element {
+                constants: E::constants(&parameters),
+                places: Array::from_fn(|i| u32::try_from(places[i]).unwrap_or(u32::MAX)),
+            }
+        };
+        let elements = elements.enumerate().map(prepare).collect();
+        Self { elements, broken }
+    }
+
+    /// Whether the velocity enters `∂L/∂q + f`.
+    pub(super) const FORCE_IS_ON_V: bool = !E::STRUCTURE.hessian.vq.is_empty()
+        || E::STRUCTURE.mass.on_q
+        || (E::STRUCTURE.forces.exist() && E::STRUCTURE.forces.on.on_v);
+}
+
+impl<E: MechanicalSystem> Element<E> {
+    #[inline(always)]
+    pub(super) fn gather<T: Scalar>(&self, of_scene: &[T]) -> E::PerCoordinate<T> {
+        Array::from_fn(|i| of_scene[self.places[i] as usize])
+    }
+
+    #[inline(always)]
+    pub(super) fn scatter<T: Scalar>(&self, local: &E::PerCoordinate<T>, sum: &mut [T]) {
+        for i in 0..E::N_COORDINATES {
+            let place = self.places[i] as usize;
+            sum[place] = sum[place] + local[i];
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn constants<T: Scalar>(&self) -> E::PerConstant<T> {
+        Array::from_fn(|i| T::from_f64(self.constants[i]))
+    }
+}
+
+impl<E: MechanicalSystem> Elements for Repeated<E> {
+    fn structure(&self) -> &'static Structure {
+        &E::STRUCTURE
+    }
+
+    fn count(&self) -> usize {
+        self.elements.len()
+    }
+
+    fn n_coordinates(&self) -> usize {
+        E::N_COORDINATES
+    }
+
+    fn n_constraints(&self) -> usize {
+        E::N_CONSTRAINTS
+    }
+
+    fn place(&self, element: usize, coordinate: usize) -> usize {
+        self.elements[element].places[coordinate] as usize
+    }
+
+    fn parameter_that_is_not_finite(&self) -> Option<(usize, &'static str, f64)> {
+        self.broken
+    }
+
+    fn energy(&self, at: Point<'_>) -> f64 {
+        let energy = |element: &Element<E>| {
+            let (q, v) = (element.gather(at.q), element.gather(at.v));
+            let momentum = E::lagrangian_gradient(&element.constants, at.t, &q, &v).momentum;
+            let action_rate: f64 = (0..E::N_COORDINATES).map(|i| momentum[i] * v[i]).sum();
+            action_rate - E::lagrangian(&element.constants, at.t, &q, &v)
+        };
+        self.elements.iter().map(energy).sum()
+    }
+
+    fn add_gradient(&self, at: Point<'_>, force: &mut [f64], momentum: &mut [f64]) {
+        for element in &self.elements {
+            let (q, v) = (element.gather(at.q), element.gather(at.v));
+            let mut local = E::lagrangian_gradient(&element.constants, at.t, &q, &v);
+            if E::STRUCTURE.forces.exist() {
+                let none = E::PerInput::<f64>::filled(0.0);
+                let added = E::forces(&element.constants, at.t, &q, &v, &none);
+                for &i in E::STRUCTURE.forces.forced {
+                    local.force[i] += added[i];
+                }
+            }
+            element.scatter(&local.force, force);
+            element.scatter(&local.momentum, momentum);
+        }
+    }
+
+    fn add_force(&self, at: Point<'_>, force: &mut [f64]) {
+        loops::add_force::<E, f64>(&self.elements, (at.t, at.q, Some(at.v)), force);
+    }
+
+    fn add_second_derivatives(
+        &self,
+        at: Point<'_>,
+        weights: &SecondWeights,
+        places: &[u32],
+        entries: &mut [f64],
+    ) {
+        let structure = &E::STRUCTURE;
+        let mut places = places.iter();
+        for element in &self.elements {
+            let (q, v) = (element.gather(at.q), element.gather(at.v));
+            let constants = element.constants.as_ref();
+            let (_, hessian) = E::lagrangian_derivatives(&element.constants, at.t, &q, &v);
+            let mut add = |value: f64| {
+                if let Some(&place) = places.next() {
+                    entries[place as usize] += value;
+                }
+            };
+            for (block, weight) in [(structure.hessian.vv, weights.vv), (structure.hessian.qq, weights.qq)] {
+                for entry in block {
+                    let value = weight * entry.value(constants, hessian.as_ref());
+                    add(value);
+                    if entry.row != entry.col {
+                        add(value);
+                    }
+                }
+            }
+            for entry in structure.hessian.vq {
+                let value = entry.value(constants, hessian.as_ref());
+                add(weights.vq * value);
+                add(weights.qv * value);
+            }
+            if structure.forces.exist() {
+                let none = E::PerInput::<f64>::filled(0.0);
+                let (_, varying) = E::force_derivatives(&element.constants, at.t, &q, &v, &none);
+                for (block, weight) in [(structure.forces.q, weights.fq), (structure.forces.v, weights.fv)] {
+                    for entry in block {
+                        add(weight * entry.value(constants, varying.as_ref()));
+                    }
+                }
+            }
+        }
+    }
+
+    fn constraint_derivatives(
+        &self,
+        t: f64,
+        q: &[f64],
+        values: &mut [f64],
+        slopes: &mut [f64],
+        rates: &mut [f64],
+    ) {
+        // Where no constraint depends on time, nothing overwrites the zeros of the beginning.
+        let rates = if E::STRUCTURE.jacobian.t.is_empty() { None } else { Some(rates) };
+        loops::constraint_derivatives::<E, f64>(&self.elements, (t, q), values, slopes, rates);
+    }
+
+    fn constraints(&self, t: f64, q: &[f64], values: &mut [f64]) {
+        loops::constraints::<E, f64>(&self.elements, t, q, values);
+    }
+
+    fn curvature(&self, at: Point<'_>, values: &mut [f64]) {
+        if E::N_CONSTRAINTS == 0 {
+            return;
+        }
+        for (element, values) in self.elements.iter().zip(values.chunks_exact_mut(E::N_CONSTRAINTS)) {
+            let (q, v) = (element.gather(at.q), element.gather(at.v));
+            let curvature = E::constraint_curvature(&element.constants, at.t, &q, &v);
+            values.copy_from_slice(curvature.as_ref());
+        }
+    }
+
+    fn add_lane_force(
+        &self,
+        instructions: InstructionSet,
+        t: Lanes,
+        q: &[Lanes],
+        v: Option<&[Lanes]>,
+        force: &mut [Lanes],
+    ) {
+        instructions.run(AddForce { elements: &self.elements, at: (t, q, v), force });
+    }
+
+    fn lane_constraints(&self, instructions: InstructionSet, t: Lanes, q: &[Lanes], values: &mut [Lanes]) {
+        instructions.run(Constraints { elements: &self.elements, at: (t, q), values, slopes: None });
+    }
+
+    fn lane_constraint_derivatives(
+        &self,
+        instructions: InstructionSet,
+        t: Lanes,
+        q: &[Lanes],
+        values: &mut [Lanes],
+        slopes: &mut [Lanes],
+    ) {
+        let slopes = Some(slopes);
+        instructions.run(Constraints { elements: &self.elements, at: (t, q), values, slopes });
+    }
+
+    fn subtract_lane_pull(
+        &self,
+        instructions: InstructionSet,
+        t: Lanes,
+        q: &[Lanes],
+        x: &[Lanes],
+        force: &mut [Lanes],
+    ) {
+        instructions.run(SubtractPull { elements: &self.elements, at: (t, q), x, force });
+    }
+}
