@@ -77,3 +77,43 @@ impl<F, X> Ensemble<F, X> {
         Ok(Some(Outcome { gathered: part, failures: failures.0, finished: count, members: count }))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::ensemble::{ByIndex, Ensemble, Member, Quantity, Summaries};
+    use crate::memory::{Digest, Memory, Record};
+    use crate::prelude::*;
+
+    #[derive(MechanicalSystem)]
+    #[evi(
+        coordinates(x, y),
+        kinetic = 0.5 * m * (der(x).powi(2) + der(y).powi(2)),
+        potential = m * g * y,
+        constraint(rod: x.powi(2) + y.powi(2) == 1.0),
+    )]
+    struct Pendulum {
+        m: f64,
+        g: f64,
+    }
+
+    /// Each number of processes compares with one by itself, and prints the same digest: `mpirun -n 4` before the test program.
+    #[test]
+    fn every_number_of_processes_has_one_digest() {
+        let universe = mpi::initialize().expect("MPI");
+        let members = ByIndex::new(500, |index| {
+            let angle = 0.002 * index as f64;
+            Member::of(&Pendulum { m: 1.0 + angle, g: 9.81 }, [angle.sin(), -angle.cos()], [0.0; 2])
+        });
+        let height = Quantity::<Pendulum>::new("height", |sight| sight.state.q()[1]).histogram(-1.0, 0.0, 7);
+        let gather = Summaries::new(3, vec![height]);
+        let ensemble = Ensemble::new(Evi::midpoint(0.05)).sampled(3, 20).chunks_of(32).threads(1);
+        let alone = ensemble.run(&members, &gather).expect("a run").gathered;
+        let outcome = ensemble.run_on_processes(&universe.world(), &members, &gather).expect("a run");
+        let Some(outcome) = outcome else { return };
+        assert!(outcome.is_complete() && outcome.failures.is_empty());
+        assert_eq!(outcome.gathered, alone);
+        let mut digest = Digest::default();
+        outcome.gathered.record(&mut Record::to(&mut |word| digest.add(word)));
+        println!("{:x}", digest.value());
+    }
+}
