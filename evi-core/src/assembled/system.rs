@@ -13,6 +13,11 @@ use crate::system::MechanicalSystem;
 ///
 /// Its constraints are those of the families in the order of [`visit_families`](Self::visit_families), element by element. See the
 /// [module](super) for an example.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not an `AssembledSystem`",
+    note = "a struct with sizes of numbers alone is a `MechanicalSystem`: `Simulation` starts it",
+    note = "one with a size that is a constant's name derives `AssembledSystem` by `#[derive(MechanicalSystem)]`"
+)]
 pub trait AssembledSystem: Sized {
     /// Number of coordinates, `n`.
     fn n_coordinates(&self) -> usize;

@@ -22,6 +22,11 @@ use crate::scalar::Scalar;
 ///
 /// Kernels take the scene's *constants*: every subexpression of the equations that depends on parameters alone,
 /// computed once by [`constants`](Self::constants) and never again during a run.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not a `MechanicalSystem`",
+    note = "a struct with a size that is a constant's name, or with a large one, is an `AssembledSystem`: `AssembledSimulation` starts it",
+    note = "any other derives `MechanicalSystem`"
+)]
 pub trait MechanicalSystem: Sized {
     /// Number of coordinates, `n`.
     const N_COORDINATES: usize = Self::COORDINATES.len();
