@@ -85,7 +85,7 @@ fn dop853_says_why_it_stopped() {
     assert_eq!(none, Some(Dop853Error::NotFinite { t: 0.0, target: 0.0 }));
     let mut solver = mild(1e-9);
     let error = solver.advance_to(f64::INFINITY).expect_err("far away");
-    assert_eq!(error.to_string(), "cannot go from t = 0 to t = inf: a number is not finite");
+    assert_eq!(error.to_string(), "cannot go from t = 0.0 to t = inf: a number is not finite");
     // The outer bob has no mass: the inner one falls, the outer is not determined.
     let massless = DoublePendulum { m2: 0.0, ..PENDULUM };
     let mut solver = dop853(&massless, &q, &v, Tolerances::both(1e-9)).expect("a start");
