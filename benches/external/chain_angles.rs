@@ -25,18 +25,30 @@ impl<const N: usize, const D: usize> System<f64, SVector<f64, D>> for Angles<N> 
     fn system(&self, _t: f64, y: &SVector<f64, D>, slope: &mut SVector<f64, D>) {
         let (angles, rates) = y.as_slice().split_at(N);
         let direction: [(f64, f64); N] = core::array::from_fn(|i| angles[i].sin_cos());
-        let below = |i: usize, j: usize| (N - i.max(j)) as f64;
+        let below = |i: usize| (N - i) as f64;
+        // Of matrix and sums, the upper triangle: `c_ij` is constant along a column of it.
         let mut matrix = [[0.0; N]; N];
-        let mut accelerations = [0.0; N];
         for i in 0..N {
             let (sin_i, cos_i) = direction[i];
-            let mut sum = self.stiffness * below(i, i) * sin_i;
-            for j in 0..N {
+            for j in i..N {
                 let (sin_j, cos_j) = direction[j];
-                matrix[i][j] = below(i, j) * (cos_i * cos_j + sin_i * sin_j);
-                sum += below(i, j) * (sin_i * cos_j - cos_i * sin_j) * rates[j] * rates[j];
+                matrix[i][j] = below(j) * (cos_i * cos_j + sin_i * sin_j);
             }
-            accelerations[i] = -sum;
+        }
+        // `Σ_j c_ij (sin, cos)(θ_j) θ̇_j²`: those before `i` hang it as one, those behind it each by itself.
+        let pull = |j: usize| [direction[j].0 * rates[j] * rates[j], direction[j].1 * rates[j] * rates[j]];
+        let mut before = [0.0; 2];
+        let mut behind =
+            (0..N).fold([0.0; 2], |sum, j| [sum[0] + below(j) * pull(j)[0], sum[1] + below(j) * pull(j)[1]]);
+        let mut accelerations = [0.0; N];
+        for i in 0..N {
+            let (sin, cos) = direction[i];
+            for k in 0..2 {
+                before[k] += pull(i)[k];
+                behind[k] -= below(i) * pull(i)[k];
+            }
+            let [sines, cosines] = core::array::from_fn(|k| below(i) * before[k] + behind[k]);
+            accelerations[i] = cos * sines - sin * cosines - self.stiffness * below(i) * sin;
         }
         solve(&mut matrix, &mut accelerations);
         slope.as_mut_slice()[..N].copy_from_slice(rates);
@@ -44,23 +56,22 @@ impl<const N: usize, const D: usize> System<f64, SVector<f64, D>> for Angles<N> 
     }
 }
 
-/// Cholesky's elimination of a symmetric positive definite matrix, of which the lower triangle is read.
+/// Elimination of a symmetric positive definite matrix, of which the upper triangle is read, row by row.
 fn solve<const N: usize>(matrix: &mut [[f64; N]; N], b: &mut [f64; N]) {
     for j in 0..N {
-        let pivot = 1.0 / matrix[j][j];
+        let pivots = matrix[j];
+        let reciprocal = 1.0 / pivots[j];
         for i in j + 1..N {
-            let factor = matrix[i][j] * pivot;
-            for k in j + 1..=i {
-                matrix[i][k] -= factor * matrix[k][j];
+            let factor = pivots[i] * reciprocal;
+            for k in i..N {
+                matrix[i][k] -= factor * pivots[k];
             }
             b[i] -= factor * b[j];
         }
     }
-    for j in (0..N).rev() {
-        b[j] /= matrix[j][j];
-        for i in 0..j {
-            b[i] -= matrix[j][i] * b[j];
-        }
+    for i in (0..N).rev() {
+        let rest: f64 = (i + 1..N).map(|k| matrix[i][k] * b[k]).sum();
+        b[i] = (b[i] - rest) / matrix[i][i];
     }
 }
 

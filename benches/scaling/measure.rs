@@ -11,29 +11,28 @@ use crate::specimen::Row;
 /// How long to measure.
 #[derive(Clone, Copy)]
 pub(crate) struct Effort {
-    /// Steps of a timed repetition, times the bodies of the scene.
-    pub(crate) body_steps: u64,
-    pub(crate) repetitions: usize,
+    /// Of the steps of a row, the first `1/share` are taken.
+    share: u64,
+    repetitions: usize,
     /// Whether instructions are counted for all rows, or for chains of 20 and 1,000 links only.
-    pub(crate) counts_all: bool,
+    counts_all: bool,
 }
 
 impl Effort {
-    pub(crate) const FULL: Self = Self { body_steps: 200_000, repetitions: 7, counts_all: true };
-    pub(crate) const QUICK: Self = Self { body_steps: 20_000, repetitions: 3, counts_all: false };
+    pub(crate) const FULL: Self = Self { share: 1, repetitions: 9, counts_all: true };
+    pub(crate) const QUICK: Self = Self { share: 5, repetitions: 3, counts_all: false };
+
+    fn steps(self, row: &Row) -> u64 {
+        row.steps / self.share
+    }
+
+    /// Steps of the shorter counted run, few of large scenes: counting slows a program down fifty times.
+    fn counted_steps(self, row: &Row) -> u64 {
+        (self.steps(row) / 3).min(10_000 / row.bodies as u64 + 3)
+    }
 
     fn counts(self, row: &Row) -> bool {
         self.counts_all || row.scene == "chain" && matches!(row.bodies, 20 | 1_000)
-    }
-
-    /// Enough steps for the clock, few enough for the largest scene.
-    fn steps(self, bodies: usize) -> u64 {
-        (self.body_steps / bodies as u64).clamp(10, 2_000)
-    }
-
-    /// Steps of the shorter counted run.
-    fn counted_steps(self, bodies: usize) -> u64 {
-        (self.steps(bodies) / 4).clamp(2, 50)
     }
 }
 
@@ -88,7 +87,7 @@ pub(crate) fn costs(
 
 /// Nanoseconds per step.
 fn time(row: &Row, effort: Effort) -> Result<f64, String> {
-    let steps = effort.steps(row.bodies);
+    let steps = effort.steps(row);
     let mut run = row.start()?;
     let clock = Instant::now();
     run.take(steps).map_err(|error| error.to_string())?;
@@ -99,7 +98,7 @@ fn cost(row: &Row, index: usize, nanoseconds: Result<f64, String>, effort: Effor
     let Row { scene, bodies, method, .. } = *row;
     let observed = nanoseconds.as_ref().ok().and_then(|_| observe(row, effort).ok());
     let counted = observed.filter(|_| effort.counts(row)).and_then(|_| {
-        instructions::per_step(effort.counted_steps(bodies), |steps| {
+        instructions::per_step(effort.counted_steps(row), |steps| {
             vec!["--counted".to_owned(), index.to_string(), steps.to_string()]
         })
     });
@@ -120,7 +119,7 @@ fn cost(row: &Row, index: usize, nanoseconds: Result<f64, String>, effort: Effor
 fn observe(row: &Row, effort: Effort) -> Result<(f64, f64), String> {
     let mut run = row.start()?;
     let mut error = run.constraint_error();
-    for _ in 0..effort.steps(row.bodies) {
+    for _ in 0..effort.steps(row) {
         run.take(1).map_err(|error| error.to_string())?;
         error = error.max(run.constraint_error());
     }

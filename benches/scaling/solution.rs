@@ -51,7 +51,7 @@ fn compare<S: AssembledSystem + Clone + 'static>(
     let bodies = specimen.bodies;
     // Steps that resolve the swing of a rod.
     let coarsest = (t * 40.0 * (bodies as f64 / 20.0).sqrt()).ceil() as u64;
-    let finest = specimen.row("galerkin_8", Galerkin::<8>::new(t / (64 * coarsest) as f64));
+    let finest = specimen.row("galerkin_8", 0.0, Galerkin::<8>::new(t / (64 * coarsest) as f64));
     let reference = match certified {
         Some(q) => q.to_vec(),
         None => solve(&finest, t, 1)?.0,
@@ -73,10 +73,10 @@ fn compare<S: AssembledSystem + Clone + 'static>(
         comparison.solutions.push(Solution { bodies, t, method, steps, position_error, microseconds });
     };
     let member = |method, h| match method {
-        "midpoint" => specimen.row(method, Evi::midpoint(h)),
-        "midpoint_4" => specimen.row(method, Evi::midpoint(h).composed(Composition::suzuki_4())),
-        "midpoint_6" => specimen.row(method, Evi::midpoint(h).composed(Composition::kahan_li_6())),
-        _ => specimen.row(method, Galerkin::<8>::new(h)),
+        "midpoint" => specimen.row(method, 0.0, Evi::midpoint(h)),
+        "midpoint_4" => specimen.row(method, 0.0, Evi::midpoint(h).composed(Composition::suzuki_4())),
+        "midpoint_6" => specimen.row(method, 0.0, Evi::midpoint(h).composed(Composition::kahan_li_6())),
+        _ => specimen.row(method, 0.0, Galerkin::<8>::new(h)),
     };
     // With the numbers of steps that each needs.
     for (method, first, count) in

@@ -21,6 +21,8 @@ pub(crate) struct Specimen<S> {
 /// Step sizes as shares of the time on which a rod swings: the same difficulty for chains of all lengths.
 const STEP: f64 = 0.02;
 const GALERKIN_STEP: f64 = 0.05;
+/// How long is measured, in that time: before the net falls together and the ring closes, where no rod is slack any more.
+const SPAN: f64 = 3.0;
 
 /// A run of any scene by any method.
 pub(crate) trait Steps {
@@ -48,6 +50,8 @@ pub(crate) struct Row {
     pub(crate) scene: &'static str,
     pub(crate) bodies: usize,
     pub(crate) method: &'static str,
+    /// Steps of the time that is measured.
+    pub(crate) steps: u64,
     start: Box<dyn Fn() -> Result<Box<dyn Steps>, String>>,
 }
 
@@ -79,16 +83,17 @@ impl<S: AssembledSystem + Clone + 'static> Specimen<S> {
     /// The methods that the table has.
     pub(crate) fn rows(&self) -> Vec<Row> {
         let h = STEP * self.time;
+        let galerkin = Galerkin::<8>::new(GALERKIN_STEP * self.time);
         vec![
-            self.row("midpoint", Evi::midpoint(h)),
-            self.row("midpoint_4", Evi::midpoint(h).composed(Composition::suzuki_4())),
-            self.row("midpoint_6", Evi::midpoint(h).composed(Composition::kahan_li_6())),
-            self.row("galerkin_8", Galerkin::<8>::new(GALERKIN_STEP * self.time)),
+            self.row("midpoint", SPAN / STEP, Evi::midpoint(h)),
+            self.row("midpoint_4", SPAN / STEP, Evi::midpoint(h).composed(Composition::suzuki_4())),
+            self.row("midpoint_6", SPAN / STEP, Evi::midpoint(h).composed(Composition::kahan_li_6())),
+            self.row("galerkin_8", SPAN / GALERKIN_STEP, galerkin),
         ]
     }
 
-    /// The scene by one scheme.
-    pub(crate) fn row<F>(&self, method: &'static str, scheme: F) -> Row
+    /// The scene by one scheme, of which so many steps are measured.
+    pub(crate) fn row<F>(&self, method: &'static str, steps: f64, scheme: F) -> Row
     where
         F: AssembledScheme + Clone + 'static,
         F::Step: 'static,
@@ -99,7 +104,7 @@ impl<S: AssembledSystem + Clone + 'static> Specimen<S> {
             let run = simulation.start(q.clone(), v.clone()).map_err(|error| error.to_string())?;
             Ok(Box::new(run.with_tally(Statistics::default())) as Box<dyn Steps>)
         };
-        Row { scene, bodies, method, start: Box::new(start) }
+        Row { scene, bodies, method, steps: steps.round() as u64, start: Box::new(start) }
     }
 }
 

@@ -33,9 +33,9 @@ struct Rope {
 }
 
 const LENGTH: f64 = 3.0;
-const H: f64 = 1e-3;
+const H: f64 = 5e-4;
 const SECONDS: f64 = 6.0;
-const STEPS_PER_FRAME: u64 = 30;
+const STEPS_PER_FRAME: u64 = 60;
 /// Of the joints, those that are drawn.
 const DRAWN: usize = 9;
 
@@ -52,7 +52,7 @@ pub(crate) fn animated() -> Result<String, Box<dyn Error>> {
     let mut joints: Vec<[f64; 2]> = ends.collect();
     let hook = joints.pop().unwrap_or_default();
     let rope = Rope { m: 0.3 / N as f64, l, hook, g: GRAVITY };
-    let simulation = AssembledSimulation::new(rope, Evi::midpoint(H));
+    let simulation = AssembledSimulation::new(rope, Evi::midpoint(H).rescued::<6>());
     let mut run = simulation.start(joints.concat(), vec![0.0; 2 * N])?;
     let energy = run.energy();
     let drawn = |q: &[f64]| {
