@@ -8,7 +8,7 @@ mod tree;
 
 use crate::specimen::Row;
 
-/// Every scene by every method.
+/// Every scene by every method, the largest last.
 pub(crate) fn rows() -> Vec<Row> {
     let chains = [
         chain::links_2::specimen().rows(),
@@ -16,13 +16,13 @@ pub(crate) fn rows() -> Vec<Row> {
         chain::links_20::specimen().rows(),
         chain::links_100::specimen().rows(),
         chain::links_1_000::specimen().rows(),
-        chain::links_10_000::specimen().rows(),
     ];
     let others = [
         four_bar::specimen().rows(),
         ring::specimen().rows(),
         tree::specimen().rows(),
         net::specimen().rows(),
+        chain::links_10_000::specimen().rows(),
     ];
     chains.into_iter().chain(others).flatten().collect()
 }
