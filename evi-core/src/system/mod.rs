@@ -141,6 +141,35 @@ pub trait MechanicalSystem: Sized {
         v: &Self::PerCoordinate<T>,
     ) -> Self::PerConstraint<T>;
 
+    /// Calls `visit(row, col, G[row][col])` for every entry of the Jacobian that is not zero, in the order of its pattern. The derive writes the calls
+    /// out, so that inlined they know their places: products with `G` are straight-line code.
+    #[inline(always)]
+    fn for_each_slope<T: Copy>(
+        constants: &Self::PerConstant<T>,
+        jacobian: &Self::PerJacobianEntry<T>,
+        mut visit: impl FnMut(usize, usize, T),
+    ) {
+        for entry in Self::STRUCTURE.jacobian.q {
+            visit(entry.row, entry.col, entry.value(constants.as_ref(), jacobian.as_ref()));
+        }
+    }
+
+    /// Calls `visit(row, other, col, G[row][col])` for every pair of entries of the Jacobian in one column, the second of them in the row `other`: what
+    /// the entry `(row, other)` of `G D Gᵀ` with a diagonal `D` is the sum of. Written out as [`for_each_slope`](Self::for_each_slope) is.
+    #[inline(always)]
+    fn for_each_slope_pair<T: Copy>(
+        constants: &Self::PerConstant<T>,
+        jacobian: &Self::PerJacobianEntry<T>,
+        mut visit: impl FnMut(usize, usize, usize, T),
+    ) {
+        for entry in Self::STRUCTURE.jacobian.q {
+            let slope = entry.value(constants.as_ref(), jacobian.as_ref());
+            for other in Self::STRUCTURE.jacobian.q.iter().filter(|other| other.col == entry.col) {
+                visit(entry.row, other.row, entry.col, slope);
+            }
+        }
+    }
+
     /// `f(t, q, v, u)`: the generalized forces that are no derivatives of `L`, so that
     /// `d/dt ∂L/∂v − ∂L/∂q + Gᵀλ = f`. The sum of the items `force` and of `−∂D/∂v` for the item `dissipation`; zero
     /// without such items.
