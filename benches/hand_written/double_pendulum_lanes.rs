@@ -54,6 +54,13 @@ fn dot<const FUSED: bool>(a: Pair, b: Pair) -> Lanes {
     fma::<FUSED>(a[0], b[0], a[1] * b[1])
 }
 
+/// The value that a cubic through the last four, newest first, predicts.
+#[inline(always)]
+fn extrapolated<const FUSED: bool>([newest, second, third, oldest]: [Lanes; 4]) -> Lanes {
+    let old = fma::<FUSED>(Lanes::splat(6.0), second, oldest);
+    fma::<FUSED>(Lanes::splat(4.0), newest + third, -old)
+}
+
 #[inline(always)]
 fn sum(a: Pair, b: Pair) -> Pair {
     [a[0] + b[0], a[1] + b[1]]
@@ -158,11 +165,7 @@ impl HandWrittenLanes {
     /// Takes a step of every pendulum. Returns whether all of them have one; those that have none stay where they were.
     #[inline(always)]
     pub fn advance<const FUSED: bool>(&mut self) -> bool {
-        let guess = [0, 1].map(|k: usize| {
-            let [newest, second, third, oldest] = self.multipliers[k];
-            let old = fma::<FUSED>(Lanes::splat(6.0), second, oldest);
-            fma::<FUSED>(Lanes::splat(4.0), newest + third, -old)
-        });
+        let guess = [extrapolated::<FUSED>(self.multipliers[0]), extrapolated::<FUSED>(self.multipliers[1])];
         let [pull_a, pull_b] = self.pull::<FUSED>(guess);
         let wa = [self.wa[0] - pull_a[0], self.wa[1] - (self.fall + pull_a[1])];
         let wb = sum(self.wb, pull_b);
@@ -174,7 +177,8 @@ impl HandWrittenLanes {
         if unsolved.is_any() {
             let first = self.pull::<FUSED>(delta);
             let squares = [dot::<FUSED>(first[0], first[0]), dot::<FUSED>(first[1], first[1])];
-            let correction = slopes.correction::<FUSED>(squares).map(|x| unsolved.select(x, Lanes::ZERO));
+            let [mu, nu] = slopes.correction::<FUSED>(squares);
+            let correction = [unsolved.select(mu, Lanes::ZERO), unsolved.select(nu, Lanes::ZERO)];
             let second = self.pull::<FUSED>(correction);
             delta = sum(delta, correction);
             // What is left now: Q of both corrections together, less Q of the first.

@@ -47,7 +47,9 @@ pub trait LaneOperation {
     /// What it returns.
     type Output;
 
-    /// Does it; `FUSED` says that the machine has an instruction for products with a sum. Implementations are `#[inline(always)]`, as is what they call.
+    /// Does it; `FUSED` says that the machine has an instruction for products with a sum. Implementations are `#[inline(always)]`, as is what they call:
+    /// a function that is not inlined is compiled for the whole program, without these instructions, where a fused product is a call. The
+    /// standard library's `map` of arrays and `from_fn` are such functions whenever the compiler pleases; loops are not.
     fn run<const FUSED: bool>(self) -> Self::Output;
 }
 
