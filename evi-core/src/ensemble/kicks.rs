@@ -4,7 +4,9 @@
 
 use super::lane_matrix::LaneMatrix;
 use super::lane_state::{nothing, side_by_side};
-use crate::mechanics::{AsMass, AsScene, ConstantLegendre, FoldedStep, KickDriftKick, LeapfrogStep};
+use crate::mechanics::{
+    AsMass, AsScene, ConstantLegendre, CoordinateMatrix, FoldedStep, KickDriftKick, LeapfrogStep,
+};
 use crate::scalar::{LANES, Lanes};
 use crate::scheme::Interpolant;
 use crate::system::MechanicalSystem;
@@ -42,7 +44,18 @@ struct LaneKick<S: MechanicalSystem> {
     constant: S::PerCoordinate<Lanes>,
 }
 
+/// The linear part of a member's kick, and its constant.
+type MemberKick<'a, S> = (&'a CoordinateMatrix<S, AsScene>, &'a <S as MechanicalSystem>::PerCoordinate<f64>);
+
 impl<S: MechanicalSystem> LaneKick<S> {
+    /// The kicks of eight members.
+    fn of(kicks: [MemberKick<'_, S>; LANES]) -> Self {
+        Self {
+            linear: LaneMatrix::of(kicks.map(|(linear, _)| linear)),
+            constant: side_by_side(|lane, i| kicks[lane].1[i]),
+        }
+    }
+
     #[inline(always)]
     fn apply<const FUSED: bool>(
         &self,
@@ -77,14 +90,8 @@ impl<S: MechanicalSystem, F: Interpolant<S>> LaneKicks<S> for FoldedLanes<S, F> 
 
     fn of(members: [&FoldedStep<S, F>; LANES]) -> Self {
         Self {
-            start: LaneKick {
-                linear: LaneMatrix::of(members.map(|member| member.start_kick().0)),
-                constant: side_by_side(|lane, i| members[lane].start_kick().1[i]),
-            },
-            end: LaneKick {
-                linear: LaneMatrix::of(members.map(|member| member.end_kick().0)),
-                constant: side_by_side(|lane, i| members[lane].end_kick().1[i]),
-            },
+            start: LaneKick::of(members.map(FoldedStep::start_kick)),
+            end: LaneKick::of(members.map(FoldedStep::end_kick)),
             curves: core::marker::PhantomData,
         }
     }

@@ -86,9 +86,12 @@ impl<S: MechanicalSystem> Slopes<S> {
         x: &S::PerConstraint<Lanes>,
     ) -> S::PerCoordinate<Lanes> {
         let mut sum: S::PerCoordinate<Lanes> = nothing();
-        for entry in S::STRUCTURE.jacobian.q {
-            sum[entry.col] = self.at(entry, jacobian).times_plus::<FUSED>(x[entry.row], sum[entry.col]);
-        }
+        S::for_each_slope(
+            &self.constants,
+            jacobian,
+            #[inline(always)]
+            |row, col, slope| sum[col] = slope.times_plus::<FUSED>(x[row], sum[col]),
+        );
         sum
     }
 
@@ -100,9 +103,12 @@ impl<S: MechanicalSystem> Slopes<S> {
         x: &S::PerCoordinate<Lanes>,
     ) -> S::PerConstraint<Lanes> {
         let mut sum: S::PerConstraint<Lanes> = nothing();
-        for entry in S::STRUCTURE.jacobian.q {
-            sum[entry.row] = self.at(entry, jacobian).times_plus::<FUSED>(x[entry.col], sum[entry.row]);
-        }
+        S::for_each_slope(
+            &self.constants,
+            jacobian,
+            #[inline(always)]
+            |row, col, slope| sum[row] = slope.times_plus::<FUSED>(x[col], sum[row]),
+        );
         sum
     }
 
@@ -129,9 +135,12 @@ impl<S: MechanicalSystem> Slopes<S> {
     ) -> S::PerConstraint<Lanes> {
         use crate::scalar::Scalar;
         let mut sum: S::PerConstraint<Lanes> = nothing();
-        for entry in S::STRUCTURE.jacobian.q {
-            sum[entry.row] = sum[entry.row] + self.at(entry, jacobian).abs() * reach[entry.col];
-        }
+        S::for_each_slope(
+            &self.constants,
+            jacobian,
+            #[inline(always)]
+            |row, col, slope| sum[row] = sum[row] + slope.abs() * reach[col],
+        );
         sum
     }
 
@@ -161,13 +170,24 @@ impl<S: MechanicalSystem> Slopes<S> {
         gram.clear();
         let diagonal = &matrix.diagonal;
         if C::IS_DIAGONAL && entries.len() <= MOST_UNROLLED {
-            for a in entries {
-                for b in entries {
-                    if a.col == b.col {
-                        self.add_pair::<FUSED>([a, b], [jacobian, start_jacobian], diagonal, gram);
-                    }
-                }
-            }
+            S::for_each_slope(
+                &self.constants,
+                start_jacobian,
+                #[inline(always)]
+                |other, shared, start_slope| {
+                    let moved = diagonal[shared] * start_slope;
+                    S::for_each_slope(
+                        &self.constants,
+                        jacobian,
+                        #[inline(always)]
+                        |row, col, slope| {
+                            if col == shared {
+                                gram.add_product::<FUSED>(row, other, slope, moved);
+                            }
+                        },
+                    );
+                },
+            );
         } else if C::IS_DIAGONAL {
             for [a, b] in &self.pairs {
                 self.add_pair::<FUSED>([a, b], [jacobian, start_jacobian], diagonal, gram);
@@ -203,8 +223,16 @@ pub(super) struct LaneLu<S: MechanicalSystem> {
 }
 
 impl<S: MechanicalSystem> LaneLu<S> {
-    /// Up to here elimination is unrolled, and a matrix is full.
-    const UNROLLED: bool = S::N_CONSTRAINTS <= 4;
+    /// Whether elimination is unrolled, and the matrix full.
+    pub(super) const IS_SMALL: bool = S::N_CONSTRAINTS <= 4;
+
+    /// A matrix to be overwritten, where it is small: one that need not leave the registers.
+    #[inline(always)]
+    pub(super) fn small() -> Self {
+        // A full matrix has no envelope.
+        let first = S::PerConstraint::<usize>::filled(0);
+        Self { rows: Array::from_fn(|_| nothing()), first, reciprocal: Lanes::ZERO }
+    }
 
     pub(super) fn new<C: Coupling<S>>() -> Self {
         let mut first = S::PerConstraint::<usize>::from_fn(|row| if C::IS_DIAGONAL { row } else { 0 });
@@ -216,7 +244,7 @@ impl<S: MechanicalSystem> LaneLu<S> {
 
     #[inline(always)]
     fn first(&self, row: usize) -> usize {
-        if Self::UNROLLED { 0 } else { self.first[row] }
+        if Self::IS_SMALL { 0 } else { self.first[row] }
     }
 
     #[inline(always)]

@@ -17,9 +17,14 @@ impl LaneMask {
     /// Every lane.
     pub const ALL: Self = Self(Lanes::splat(1.0));
 
+    /// These lanes.
+    pub fn of(chosen: [bool; LANES]) -> Self {
+        Self(Lanes::new(chosen.map(|chosen| if chosen { 1.0 } else { 0.0 })))
+    }
+
     /// The first `count` lanes.
     pub fn first(count: usize) -> Self {
-        Self(Lanes::new(core::array::from_fn(|lane| if lane < count { 1.0 } else { 0.0 })))
+        Self::of(core::array::from_fn(|lane| lane < count))
     }
 
     /// Whether `a ≤ b` in every lane: what is asked before a mask is made, since the answer is a flag, not a vector.
@@ -92,6 +97,12 @@ impl LaneMask {
             any |= chosen[lane] > 0.0;
         }
         any
+    }
+
+    /// Whether every lane is chosen.
+    #[inline(always)]
+    pub fn is_all(self) -> bool {
+        Self::is_everywhere_at_most(Lanes::splat(1.0), self.0)
     }
 
     /// Whether this lane is chosen.

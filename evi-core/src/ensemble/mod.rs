@@ -16,10 +16,12 @@ mod journal;
 mod kicks;
 mod lane_map;
 mod lane_matrix;
+mod lane_span;
 mod lane_state;
 mod mask;
 mod members;
 mod multiplier_lanes;
+mod multiplier_search;
 #[cfg(feature = "mpi")]
 mod processes;
 mod projection;

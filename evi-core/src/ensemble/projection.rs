@@ -25,23 +25,19 @@ pub(super) fn project<S: MechanicalSystem, const FUSED: bool>(
     p: S::PerCoordinate<Lanes>,
     active: LaneMask,
 ) -> Projected<S> {
-    let (mut projected, removed) = remove_rest::<S, FUSED>(slopes, legendre, gram, jacobian, &p);
-    let moving = legendre.moving(&projected.p);
-    let mut energy = Lanes::ZERO;
-    for i in 0..S::N_COORDINATES {
-        energy = moving[i].times_plus::<FUSED>(projected.v[i], energy);
-    }
-    let allowed = Lanes::splat(LARGEST_REST) * energy;
+    let (mut projected, removed, energy) = remove_rest::<S, FUSED>(slopes, legendre, gram, jacobian, &p);
+    // What is kept and what is removed are orthogonal in the metric of the masses: the energy that is kept need not be waited for.
+    let allowed = Lanes::splat(LARGEST_REST) * (energy - removed);
     if !LaneMask::is_everywhere_at_most(removed, allowed) {
-        let large = LaneMask::below(allowed, removed).and(active);
-        let (again, _) = remove_rest::<S, FUSED>(slopes, legendre, gram, jacobian, &projected.p);
+        let large = LaneMask::ALL.without(LaneMask::at_most(removed, allowed)).and(active);
+        let (again, ..) = remove_rest::<S, FUSED>(slopes, legendre, gram, jacobian, &projected.p);
         blend(large, &again.v, &mut projected.v);
         blend(large, &again.p, &mut projected.p);
     }
     projected
 }
 
-/// The projected momenta, and twice the kinetic energy that is removed.
+/// The projected momenta, and twice the kinetic energies that are removed and that there were.
 #[inline(always)]
 fn remove_rest<S: MechanicalSystem, const FUSED: bool>(
     slopes: &Slopes<S>,
@@ -49,8 +45,14 @@ fn remove_rest<S: MechanicalSystem, const FUSED: bool>(
     gram: &LaneLu<S>,
     jacobian: &S::PerJacobianEntry<Lanes>,
     p: &S::PerCoordinate<Lanes>,
-) -> (Projected<S>, Lanes) {
-    let rate = slopes.rate::<FUSED>(jacobian, &legendre.velocity::<FUSED>(p));
+) -> (Projected<S>, Lanes, Lanes) {
+    let v = legendre.velocity::<FUSED>(p);
+    let moving = legendre.moving(p);
+    let mut energy = Lanes::ZERO;
+    for i in 0..S::N_COORDINATES {
+        energy = moving[i].times_plus::<FUSED>(v[i], energy);
+    }
+    let rate = slopes.rate::<FUSED>(jacobian, &v);
     let mut impulse = rate.clone();
     gram.solve::<FUSED>(&mut impulse);
     let pull = slopes.pull::<FUSED>(jacobian, &impulse);
@@ -62,5 +64,5 @@ fn remove_rest<S: MechanicalSystem, const FUSED: bool>(
     for c in 0..S::N_CONSTRAINTS {
         removed = impulse[c].times_plus::<FUSED>(rate[c], removed);
     }
-    (Projected { v: legendre.velocity::<FUSED>(&kept), p: kept }, removed)
+    (Projected { v: legendre.velocity::<FUSED>(&kept), p: kept }, removed, energy)
 }

@@ -21,8 +21,10 @@ pub trait Section<S: MechanicalSystem>: Sync {
     /// The members that have crossed the surface in a step between these states: some of those whose `s` has changed its sign.
     #[inline(always)]
     fn crossed(&self, before: &LaneState<S>, after: &LaneState<S>) -> LaneMask {
-        let [before, after] =
-            [before, after].map(|state| self.value(Lanes::splat(state.t), &state.q, &state.v));
+        let [before, after] = [
+            self.value(Lanes::splat(before.t), &before.q, &before.v),
+            self.value(Lanes::splat(after.t), &after.q, &after.v),
+        ];
         LaneMask::below(before, Lanes::ZERO).and(LaneMask::at_most(Lanes::ZERO, after))
     }
 }
