@@ -109,3 +109,26 @@ fn the_journal_of_another_ensemble_is_refused() {
     let error = Journal::open("/nowhere/at/all", "pendulums").err().expect("refused");
     assert!(matches!(error, JournalError::Open { .. }), "{error}");
 }
+
+/// A link to a device that is always full stands for a disk that is.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_table_on_a_full_disk_is_an_error_and_the_old_one_stays() {
+    use evi_core::columns::{Column, ColumnsError};
+
+    let scratch = Scratch::new("table");
+    let path = scratch.0.with_extension("csv");
+    let new = Scratch(scratch.0.with_extension("new"));
+    let mut table = Table::new(vec![Column::index("member"), Column::number("t")]);
+    table.push([7.0, 0.25]);
+    table.save(&path).expect("room");
+    let old = std::fs::read(&path).expect("a file");
+    std::os::unix::fs::symlink("/dev/full", &new.0).expect("a link");
+    table.push([8.0, 0.5]);
+    let error = table.save(&path).expect_err("no room");
+    let ColumnsError::Write { cause, .. } = &error else { panic!("{error}") };
+    assert_eq!(cause.kind(), std::io::ErrorKind::StorageFull);
+    assert_eq!(std::fs::read(&path).expect("a file"), old);
+    assert!(!new.0.exists() && !new.0.is_symlink(), "the new file is gone");
+    drop(Scratch(path));
+}

@@ -75,6 +75,10 @@ impl Journal {
             .truncate(false)
             .open(&path)
             .map_err(open)?;
+        // What is no file may never end, as `/dev/full` does not.
+        if !file.metadata().map_err(open)?.is_file() {
+            return Err(open(io::Error::new(io::ErrorKind::InvalidInput, "it is no regular file")));
+        }
         let head = [MAGIC, digest(name.bytes().map(u64::from))];
         let mut bytes = Vec::new();
         file.read_to_end(&mut bytes).map_err(open)?;
@@ -151,4 +155,34 @@ fn digest(words: impl IntoIterator<Item = u64>) -> u64 {
     let mut digest = Digest::default();
     words.into_iter().for_each(|word| digest.add(word));
     digest.value()
+}
+
+#[cfg(all(test, target_os = "linux"))]
+mod tests {
+    use super::*;
+
+    /// A device that is always full stands for a disk that is.
+    #[test]
+    fn a_full_disk_is_an_error_that_says_how_many_chunks_are_kept() {
+        let path = PathBuf::from("/dev/full");
+        let file = OpenOptions::new().write(true).open(&path).expect("Linux has it");
+        let file = Mutex::new(Writer { file, length: 16, chunks: 3 });
+        let journal = Journal { path, found: HashMap::new(), file };
+        let error = journal.record(3, &()).expect_err("no room");
+        let JournalError::Write { chunks, cause, .. } = &error else { panic!("{error}") };
+        assert_eq!((*chunks, cause.kind()), (3, io::ErrorKind::StorageFull));
+        assert_eq!(
+            error.to_string(),
+            "cannot write /dev/full: No space left on device (os error 28); 3 finished chunks are kept in it"
+        );
+        // The next record would stand where this one was to stand.
+        let writer = journal.file.lock().expect("no panic");
+        assert_eq!((writer.length, writer.chunks), (16, 3));
+    }
+
+    #[test]
+    fn what_is_no_file_is_no_journal() {
+        let error = Journal::open("/dev/full", "pendulums").err().expect("refused");
+        assert_eq!(error.to_string(), "cannot open /dev/full: it is no regular file");
+    }
 }
