@@ -10,7 +10,9 @@
 mod chunk;
 mod evi_lanes;
 mod failure;
+mod galerkin_landing;
 mod galerkin_lanes;
+mod galerkin_passes;
 mod gather;
 mod journal;
 mod kicks;

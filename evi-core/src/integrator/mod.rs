@@ -36,9 +36,9 @@ pub use compensated::{Compensable, CompensableStep, Compensated, CompensatedStep
 pub use composition::{Composed, ComposedStep, Composition, Symmetric};
 pub use evi::{Evi, EviStep};
 #[cfg(feature = "std")]
-pub(crate) use galerkin::NewtonSolve;
-#[cfg(feature = "std")]
 pub use galerkin::{Galerkin, GalerkinStep, Iteration};
+#[cfg(feature = "std")]
+pub(crate) use galerkin::{NewtonSolve, ROUGH};
 #[cfg(feature = "std")]
 pub(crate) use gauss::GaussNewton;
 #[cfg(feature = "std")]

@@ -13,7 +13,7 @@ use super::lane_step::{product, reach};
 use super::{Mechanics, State};
 use crate::array::Array;
 use crate::linear::LaneMass;
-use crate::newton::{NotConverged, Progress};
+use crate::newton::{NotConverged, Progress, TARGET};
 use crate::scalar::{LaneOperation, Lanes, Scalar};
 use crate::scheme::{GaussTables, PAST};
 use crate::system::MechanicalSystem;
@@ -129,7 +129,7 @@ impl<S: MechanicalSystem, const K: usize> GaussPasses<S, K> {
             passes += 1;
             let moved = h * Scalar::sqrt(moves.largest());
             let reach = reach(Scalar::sqrt(here.largest()), h * Scalar::sqrt(speed.largest()));
-            if progress.has_converged_linearly(if moved == 0.0 { 0.0 } else { moved / reach })? {
+            if progress.has_converged_linearly(if moved == 0.0 { 0.0 } else { moved / reach }, TARGET)? {
                 break;
             }
         }

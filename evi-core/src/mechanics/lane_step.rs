@@ -31,6 +31,8 @@ const MOST_UNROLLED: usize = 16;
 
 /// The passes of one scene, for one step size.
 pub(crate) struct LaneStep<S: MechanicalSystem, const K: usize> {
+    /// Relative length of a last correction.
+    tolerance: f64,
     constants: S::PerConstant<Lanes>,
     inverse_mass: CoordinateMatrix<S, AsMass>,
     pub(crate) legendre: ConstantLegendre<S>,
@@ -90,8 +92,9 @@ impl<S: MechanicalSystem, const K: usize> LaneStep<S, K> {
     const FORCE_VARIES: bool = !S::STRUCTURE.hessian.qq.is_empty()
         || (S::STRUCTURE.forces.exist() && (S::STRUCTURE.forces.on.on_q || S::STRUCTURE.forces.on.on_v));
 
-    /// `None` if the mass matrix is not positive definite: passes eliminate without pivoting.
-    pub(crate) fn new(mechanics: &Mechanics<S>, h: f64) -> Option<Self> {
+    /// Passes end where the next one would move no point by more than `tolerance` of the configuration. `None` if the mass matrix is not positive
+    /// definite: passes eliminate without pivoting.
+    pub(crate) fn new(mechanics: &Mechanics<S>, h: f64, tolerance: f64) -> Option<Self> {
         let mass = mechanics.constant_mass();
         Cholesky::new::<S::PerCoordinate<f64>>(&mass)?;
         let inverse = CoordinateMatrix::<S>::inverse_of(&mass).ok()?;
@@ -102,6 +105,7 @@ impl<S: MechanicalSystem, const K: usize> LaneStep<S, K> {
         let entries = S::STRUCTURE.jacobian.q;
         let pairs = entries.iter().flat_map(|a| entries.iter().map(move |b| [*a, *b]));
         Some(Self {
+            tolerance,
             constants: Array::from_fn(|i| Lanes::splat(mechanics.constants[i])),
             inverse_mass: CoordinateMatrix::new(Array::from_fn(|i| Array::from_fn(|j| inverse_at(i, j)))),
             legendre: ConstantLegendre::new(mechanics).ok()?,
@@ -179,7 +183,9 @@ impl<S: MechanicalSystem, const K: usize> LaneStep<S, K> {
             let length = Scalar::sqrt(squares.largest().abs()) * per_reach;
             is_stale = length > STALE;
             // In the first pass nothing has moved yet.
-            if (passes == 1 && Self::FORCE_VARIES) || !progress.has_converged_linearly(length)? {
+            if (passes == 1 && Self::FORCE_VARIES)
+                || !progress.has_converged_linearly(length, self.tolerance)?
+            {
                 continue;
             }
             let mut difference: S::PerCoordinate<f64> = Array::filled(0.0);

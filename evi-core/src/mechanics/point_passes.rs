@@ -23,7 +23,7 @@ use super::point_guess::{FirstPoints, NodeMotion, NodeMultipliers, Nodes, PointG
 use super::{ForcePoint, Mechanics, State};
 use crate::array::Array;
 use crate::linear::{LaneGram, LaneMass};
-use crate::newton::{NotConverged, Progress};
+use crate::newton::{NotConverged, Progress, TARGET};
 use crate::scalar::{LaneOperation, Lanes, Scalar};
 use crate::scheme::PointTables;
 use crate::system::{LagrangianGradient, MassShape, MechanicalSystem};
@@ -186,7 +186,7 @@ impl<S: MechanicalSystem, const K: usize> PointPasses<S, K> {
             let length = Scalar::sqrt(square) * per_reach;
             is_stale = length > STALE;
             // Then once more, for the forces where the points have come to.
-            is_last = progress.has_converged_linearly(length)?;
+            is_last = progress.has_converged_linearly(length, TARGET)?;
         }
     }
 

@@ -71,19 +71,23 @@ impl Progress {
         self.record(length, is_round_off)
     }
 
-    /// The same for a linearly convergent iteration. What a first guess is off by may shrink faster at first than what is left of it then: the
+    /// The same for a linearly convergent iteration, to a `tolerance` of [`TARGET`] or more. What a first guess is off by may shrink faster at first than what is left of it then: the
     /// slower one of the last two rates predicts the next correction, and the first correction has none.
     ///
     /// # Errors
     /// As for [`has_converged`](Self::has_converged).
     #[cfg(feature = "std")]
     #[inline(always)]
-    pub(crate) fn has_converged_linearly(&mut self, length: f64) -> Result<bool, NotConverged> {
+    pub(crate) fn has_converged_linearly(
+        &mut self,
+        length: f64,
+        tolerance: f64,
+    ) -> Result<bool, NotConverged> {
         let rate = if self.previous > 0.0 { length / self.previous } else { 1.0 };
         let slower = if rate > self.rate { rate } else { self.rate };
         self.rate = rate;
-        let is_round_off = length * (if slower < 1.0 { slower } else { 1.0 }) < TARGET;
-        self.record(length, is_round_off)
+        let is_solved = length * (if slower < 1.0 { slower } else { 1.0 }) < tolerance;
+        self.record(length, is_solved)
     }
 
     /// The same for an iteration that judges its parts, each by [`predicts_round_off`].
@@ -186,7 +190,9 @@ mod tests {
     fn a_fast_start_is_not_mistaken_for_the_rate_of_convergence() {
         let passes = |lengths: &[f64]| {
             let mut progress = Progress::default();
-            lengths.iter().position(|&length| progress.has_converged_linearly(length).expect("numbers"))
+            lengths
+                .iter()
+                .position(|&length| progress.has_converged_linearly(length, TARGET).expect("numbers"))
         };
         // Its second ratio promises 1e-18; at the rate of the third 1e-15 is left.
         assert_eq!(passes(&[1e-6, 1e-12, 1e-14, 1e-16, 1e-18]), Some(3));

@@ -18,7 +18,7 @@ use super::super::mass::ConstantMass;
 use super::super::scene::{ConstantInertia, PreparedScene};
 use super::super::sparse::Symmetric;
 use crate::mechanics::product;
-use crate::newton::{NotConverged, Progress};
+use crate::newton::{NotConverged, Progress, TARGET};
 use crate::scalar::{InstructionSet, LaneOperation, Lanes, Scalar};
 use crate::scheme::{LaneTables, PAST};
 
@@ -234,7 +234,7 @@ impl NodeStorage {
             let length = lengths.largest() * per_reach;
             is_stale = length > STALE;
             // In the first pass nothing has moved yet.
-            if (passes == 1 && force_varies) || !progress.has_converged_linearly(length)? {
+            if (passes == 1 && force_varies) || !progress.has_converged_linearly(length, TARGET)? {
                 continue;
             }
             // Comparisons lose a NaN on the way; at the end of a step it arrives from every node.

@@ -9,11 +9,13 @@ use core::fmt;
 use super::{Compensable, CompensableStep, OneStep, Scheme, StepError, Symmetric, Tally};
 use crate::mechanics::{Dropped, GalerkinAction, Lost, LostDigits, Mechanics, RoundOff, State, Sum};
 use crate::memory::memory;
+use crate::newton::TARGET;
 use crate::scalar::InstructionSet;
 use crate::scheme::{Frequency, Linear, NodalCurves, SchemeError, checked_step_size};
 use crate::system::MechanicalSystem;
 pub(crate) use newton::NewtonSolve;
 use passes::LanePasses;
+pub(crate) use passes::ROUGH;
 use points::PointSteps;
 
 /// A Galerkin variational integrator with `K` intervals between Lobatto nodes, `1 ≤ K ≤ 8`.
@@ -43,22 +45,29 @@ pub struct Galerkin<const K: usize, F = Linear> {
     h: f64,
     curves: F,
     by_newton: bool,
+    tolerance: f64,
 }
 
 impl<const K: usize> Galerkin<K> {
     /// The member on polynomials, for steps of size `h`.
     pub const fn new(h: f64) -> Self {
-        Self { h, curves: Linear, by_newton: false }
+        Self { h, curves: Linear, by_newton: false, tolerance: TARGET }
     }
 
     /// Gives every coordinate the same frequency.
     pub fn frequency(self, frequency: impl Into<Frequency>) -> Galerkin<K, Frequency> {
-        Galerkin { h: self.h, curves: frequency.into(), by_newton: self.by_newton }
+        self.on(frequency.into())
     }
 
     /// Gives coordinate `i` the frequency `frequencies[i]`; [`Frequency::ZERO`] stands for a polynomial.
     pub fn frequencies<const N: usize>(self, frequencies: [Frequency; N]) -> Galerkin<K, [Frequency; N]> {
-        Galerkin { h: self.h, curves: frequencies, by_newton: self.by_newton }
+        self.on(frequencies)
+    }
+
+    /// The same member on other curves.
+    fn on<F>(self, curves: F) -> Galerkin<K, F> {
+        let Self { h, curves: Linear, by_newton, tolerance } = self;
+        Galerkin { h, curves, by_newton, tolerance }
     }
 }
 
@@ -67,6 +76,20 @@ impl<const K: usize, F> Galerkin<K, F> {
     #[must_use]
     pub fn by_newton(self) -> Self {
         Self { by_newton: true, ..self }
+    }
+
+    /// Ends the passes of a step where the next one would move no point by more than `tolerance` of the configuration, instead of at round-off. What a
+    /// step keeps exactly it then keeps to that tolerance, but for the constraints and the hidden ones, which hold to round-off; as long as it is
+    /// well below the error of a step, runs end as near to the truth, after fewer passes. A tolerance below round-off is round-off.
+    #[must_use]
+    pub fn solved_to(self, tolerance: f64) -> Self {
+        // Written so that a NaN is round-off.
+        Self { tolerance: if tolerance > TARGET { tolerance } else { TARGET }, ..self }
+    }
+
+    /// Relative length of a last correction.
+    pub(crate) const fn tolerance(&self) -> f64 {
+        self.tolerance
     }
 
     /// Whether [`by_newton`](Self::by_newton) has been called.
@@ -81,7 +104,7 @@ impl<const K: usize, F: Clone> Symmetric for Galerkin<K, F> {
     }
 
     fn with_step_size(&self, h: f64) -> Self {
-        Self { h, curves: self.curves.clone(), by_newton: self.by_newton }
+        Self { h, curves: self.curves.clone(), by_newton: self.by_newton, tolerance: self.tolerance }
     }
 
     fn check_symmetry(&self) -> Result<(), SchemeError> {
@@ -105,7 +128,11 @@ impl<S: MechanicalSystem, const K: usize, F: NodalCurves<S>> Scheme<S> for Galer
         let is_mass_constant = LanePasses::<S, K>::EXIST;
         Ok(GalerkinStep {
             // A mass matrix that is not positive definite leaves the step to Newton's iteration.
-            passes: if has_passes && is_mass_constant { LanePasses::new(&action.mechanics, h) } else { None },
+            passes: if has_passes && is_mass_constant {
+                LanePasses::new(&action.mechanics, h, self.tolerance)
+            } else {
+                None
+            },
             points: (has_passes && !is_mass_constant).then(|| PointSteps::new(&action.mechanics, h)),
             newton: NewtonSolve::new(&action),
             action,

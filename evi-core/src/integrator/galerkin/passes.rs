@@ -17,6 +17,8 @@ use crate::system::MechanicalSystem;
 /// Ends are on the constraints and on the hidden ones to round-off. What is farther beside them than this share of their terms has been projected
 /// with a matrix that does not determine it, as of masses whose ratio is no number.
 const BESIDE: f64 = 1e-3;
+/// Ends whose passes stop at more than this are projected twice: what the first projection leaves is the square of it.
+pub(crate) const ROUGH: f64 = 1e-8;
 /// Of the configuration, a length far above round-off and far below a step.
 const SLIGHT: f64 = 1e-10;
 
@@ -24,12 +26,14 @@ const SLIGHT: f64 = 1e-10;
 pub(super) struct LanePasses<S: MechanicalSystem, const K: usize> {
     step: LaneStep<S, K>,
     instructions: InstructionSet,
-    /// The accelerations of the last steps, the last one first. They affect the number of passes and the last bits of a state,
-    /// nothing else.
+    /// The accelerations of the last steps, the last one first. They affect the number of passes and what a state has below
+    /// their tolerance, nothing else.
     past: [S::PerCoordinate<Lanes>; PAST],
     /// How many of them are known.
     known: usize,
     h: f64,
+    /// Relative length of a last correction.
+    tolerance: f64,
 }
 
 impl<S: MechanicalSystem, const K: usize> LanePasses<S, K> {
@@ -37,9 +41,10 @@ impl<S: MechanicalSystem, const K: usize> LanePasses<S, K> {
     pub(super) const EXIST: bool = LaneStep::<S, K>::EXISTS;
 
     /// `None` if the mass matrix is not positive definite: the passes eliminate without pivoting.
-    pub(super) fn new(mechanics: &Mechanics<S>, h: f64) -> Option<Self> {
+    pub(super) fn new(mechanics: &Mechanics<S>, h: f64, tolerance: f64) -> Option<Self> {
         Some(Self {
-            step: LaneStep::new(mechanics, h)?,
+            step: LaneStep::new(mechanics, h, tolerance)?,
+            tolerance,
             instructions: InstructionSet::detect(),
             past: core::array::from_fn(|_| Array::filled(Lanes::ZERO)),
             known: 0,
@@ -109,6 +114,13 @@ impl<S: MechanicalSystem, const K: usize> NodePasses<S> for LanePasses<S, K> {
         let mut pull = S::PerCoordinate::<f64>::filled(0.0);
         mechanics.subtract_constraint_force(&jacobian, &shares, &mut pull);
         position = position.plus(&self.step.inverse_mass_times(&pull));
+        if self.tolerance > ROUGH {
+            let mut shares = S::constraints(constants, t, position.value().borrow());
+            gram.solve(&mut shares);
+            let mut pull = S::PerCoordinate::<f64>::filled(0.0);
+            mechanics.subtract_constraint_force(&jacobian, &shares, &mut pull);
+            position = position.plus(&self.step.inverse_mass_times(&pull));
+        }
         let (q, lost_q) = position.split();
         let (left, jacobian) = S::constraint_derivatives(constants, t, &q);
         let gain = self.step.momentum_gain(mechanics, (state, t), &q);
@@ -145,7 +157,8 @@ impl<S: MechanicalSystem, const K: usize> NodePasses<S> for LanePasses<S, K> {
 
 // The storage of the passes is written anew in every step.
 memory!([S: MechanicalSystem, const K: usize] LanePasses<S, K>, |words|
-    Self { step: _, instructions: _, past, known, h: _ } => {
+    Self { step: _, instructions: _, past, known, h: _, tolerance } => {
+        words.fixed(*tolerance);
         for accelerations in past {
             words.lanes(accelerations);
         }
