@@ -11,6 +11,7 @@ use evi_examples::DoublePendulum;
 use serde::Serialize;
 
 use crate::family::fraction;
+use crate::watch::Watch;
 
 /// A row of `equal_error.csv`.
 #[derive(Clone, Serialize)]
@@ -18,6 +19,8 @@ pub(crate) struct Row {
     method: String,
     /// Tolerance, or step size.
     setting: f64,
+    /// To which a step is solved: of heyoka the same, of others 0 for round-off.
+    tolerance: f64,
     trajectories: usize,
     /// The median over the trajectories of the largest error of a position at the end.
     median_error: f64,
@@ -74,8 +77,16 @@ where
 /// Trajectories that are timed together: groups of eight in turn.
 const BLOCK: usize = 32;
 
-pub(crate) fn all(quick: bool) -> Result<Vec<Row>, Box<dyn Error>> {
+/// Pieces of work: heyoka, and every member.
+pub(crate) const PIECES: usize = 11;
+
+/// The rows that are finished before somebody interrupts.
+pub(crate) fn all(quick: bool, watch: &Watch) -> Result<Vec<Row>, Box<dyn Error>> {
     let (count, repetitions) = if quick { (64, 10) } else { (64, 100) };
+    let mut rows = Vec::new();
+    if !watch.goes_on("heyoka") {
+        return Ok(rows);
+    }
     // Sixteenth order far below the errors that are compared, but for the round-off that the motion amplifies.
     let Moved { ends: reference, .. } = moved(Galerkin::<8>::new(0.02), 500, count, 1)?;
     let error = |ends: &[[f64; 4]]| {
@@ -86,12 +97,12 @@ pub(crate) fn all(quick: bool) -> Result<Vec<Row>, Box<dyn Error>> {
         errors.sort_by(f64::total_cmp);
         errors[count / 2]
     };
-    let mut rows = Vec::new();
     let starts: Vec<_> = (0..count).map(member).map(|member| (member.q, member.v)).collect();
     match heyoka_batch("double_pendulum", &DoublePendulum::UNIT, &starts, HORIZON, &TOLERANCES, repetitions) {
         Ok(found) => rows.extend(found.iter().map(|BatchRow { tolerance, microseconds, ends, batch }| Row {
             method: format!("heyoka, batches of {batch}"),
             setting: *tolerance,
+            tolerance: *tolerance,
             trajectories: count,
             median_error: error(ends),
             trajectories_per_second: count as f64 / (1e-6 * microseconds),
@@ -99,36 +110,59 @@ pub(crate) fn all(quick: bool) -> Result<Vec<Row>, Box<dyn Error>> {
         Err(error @ PeerError::NotInstalled { .. }) => println!("{error}"),
         Err(error) => return Err(error.into()),
     }
-    let mut add = |method: &str, h: f64, Moved { ends, seconds }: Moved| {
+    // Round-off, unless a step may be solved to less.
+    const ROUND_OFF: f64 = 0.0;
+    let members: [(usize, u64, f64); PIECES - 1] = [
+        (3, 125, ROUND_OFF),
+        (3, 160, 1e-5),
+        (4, 125, ROUND_OFF),
+        (4, 125, 1e-6),
+        (8, 125, ROUND_OFF),
+        (8, 125, 1e-11),
+        (8, 160, 1e-11),
+        (8, 220, 1e-14),
+        (8, 200, ROUND_OFF),
+        (8, 250, ROUND_OFF),
+    ];
+    for (nodes, steps, tolerance) in members {
+        let h = HORIZON / steps as f64;
+        let method = format!("Galerkin {nodes}, lanes");
+        if !watch.goes_on(&format!("{method}, h = {h}")) {
+            break;
+        }
+        let Moved { ends, seconds } = match nodes {
+            3 => moved(Galerkin::<3>::new(h).solved_to(tolerance), steps, count, repetitions)?,
+            4 => moved(Galerkin::<4>::new(h).solved_to(tolerance), steps, count, repetitions)?,
+            _ => moved(Galerkin::<8>::new(h).solved_to(tolerance), steps, count, repetitions)?,
+        };
         rows.push(Row {
-            method: method.to_owned(),
+            method,
             setting: h,
+            tolerance,
             trajectories: count,
             median_error: error(&ends),
             trajectories_per_second: count as f64 / seconds,
         });
-    };
-    for steps in [80, 100, 125, 160, 200, 250] {
-        let h = HORIZON / steps as f64;
-        add("Galerkin 8, lanes", h, moved(Galerkin::<8>::new(h), steps, count, repetitions)?);
-    }
-    for steps in [64, 100, 160, 250] {
-        let h = HORIZON / steps as f64;
-        add("Galerkin 4, lanes", h, moved(Galerkin::<4>::new(h), steps, count, repetitions)?);
     }
     Ok(rows)
 }
 
 /// The rows as text.
 pub(crate) fn table(rows: &[Row]) -> String {
-    let mut text =
-        format!("{:<22} {:>9} {:>13} {:>20}\n", "method", "setting", "median error", "trajectories/s/core");
+    let mut text = format!(
+        "{:<22} {:>9} {:>9} {:>13} {:>20}\n",
+        "method", "setting", "solved to", "median error", "trajectories/s/core"
+    );
     for row in rows {
         // Writing to a string does not fail.
         let _ = writeln!(
             text,
-            "{:<22} {:>9.1e} {:>13.1e} {:>20.0}",
-            row.method, row.setting, row.median_error, row.trajectories_per_second
+            "{:<22} {:>9.1e} {:>9} {:>13.1e} {:>20.0}",
+            row.method,
+            row.setting,
+            if row.tolerance > 0.0 { format!("{:.0e}", row.tolerance) } else { "round-off".to_owned() },
+            row.median_error,
+            row.trajectories_per_second
         );
     }
     text

@@ -2,20 +2,25 @@
 //!
 //! `cargo run --release --example ensemble -- --out DIR [--quick]`. Out: two tables on the terminal, `ensemble.csv`, and `equal_error.csv`:
 //! trajectories per second of the double pendulum to T = 10 at the errors that heyoka's tolerances lead to. With the feature `mpi` the same ensemble runs on 1, 2 and
-//! 4 processes. Lanes take the vector instructions that the machine has, found at run time; everything else those of the build (`RUSTFLAGS="-C target-cpu=native"` for all of the machine).
+//! 4 processes. Ctrl-C keeps the figures that are finished; timings of another hour are no part of a table, so that it does not go on from them. Lanes take the vector instructions that the machine has, found at run time; everything else those of the build (`RUSTFLAGS="-C target-cpu=native"` for all of the machine).
 
 mod equal_error;
 mod family;
 #[cfg(feature = "mpi")]
 mod processes;
 mod speed;
+mod watch;
 
 use std::error::Error;
 use std::path::PathBuf;
+use std::process::ExitCode;
 
 use clap::Parser;
 use evi_benches::program::files;
 use evi_benches::program::machine::Machine;
+use evi_benches::program::progress::Ending;
+
+use watch::Watch;
 
 /// Speed of ensembles.
 #[derive(Parser)]
@@ -28,26 +33,43 @@ struct Options {
     quick: bool,
 }
 
-fn main() -> Result<(), Box<dyn Error>> {
+fn main() -> ExitCode {
+    match run() {
+        Ok(Ending::Complete) => ExitCode::SUCCESS,
+        Ok(Ending::Interrupted) => ExitCode::from(130),
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn run() -> Result<Ending, Box<dyn Error>> {
     #[cfg(feature = "mpi")]
     if std::env::args().any(|argument| argument == processes::AS_PROCESS) {
-        return processes::take_part();
+        return processes::take_part().map(|()| Ending::Complete);
     }
     let Options { out, quick } = Options::parse();
     // Before the minutes of measuring: a folder that cannot be written is told at once.
     out.as_deref().map(files::prepare).transpose()?;
     println!("{}\n", Machine::present().line());
+    let watch = Watch::of(speed::rounds(quick) + equal_error::PIECES)?;
     #[cfg_attr(not(feature = "mpi"), expect(unused_mut, reason = "rows of processes come with the feature"))]
-    let mut rows = speed::all(quick)?;
+    let mut rows = speed::all(quick, &watch)?;
     #[cfg(feature = "mpi")]
     rows.extend(processes::all()?);
+    let errors = equal_error::all(quick, &watch)?;
+    let is_complete = watch.finish();
     print!("{}", speed::table(&rows));
-    let errors = equal_error::all(quick)?;
     print!("\n{}", equal_error::table(&errors));
     if let Some(out) = out {
         for (name, text) in [("ensemble.csv", files::csv(&rows)), ("equal_error.csv", files::csv(&errors))] {
             println!("wrote {}", files::replace(&out.join(name), &text)?.display());
         }
     }
-    Ok(())
+    if !is_complete {
+        println!("interrupted: these are the figures that were finished");
+        return Ok(Ending::Interrupted);
+    }
+    Ok(Ending::Complete)
 }

@@ -12,6 +12,7 @@ use evi_examples::{DoublePendulum, SphericalPendulum, Start};
 use serde::Serialize;
 
 use crate::family::Family;
+use crate::watch::Watch;
 
 /// A row of `ensemble.csv`.
 #[derive(Clone, Serialize)]
@@ -48,16 +49,26 @@ struct Way<'a> {
 const STEPS: u64 = 1_000;
 const GALERKIN_STEPS: u64 = 50;
 
-pub(crate) fn all(quick: bool) -> Result<Vec<Row>, Box<dyn Error>> {
-    let repetitions = if quick { 20 } else { 400 };
+/// Rounds of repetitions of all families.
+pub(crate) const fn rounds(quick: bool) -> usize {
+    3 * repetitions(quick)
+}
+
+const fn repetitions(quick: bool) -> usize {
+    if quick { 20 } else { 400 }
+}
+
+/// The rows of the families that are measured before somebody interrupts.
+pub(crate) fn all(quick: bool, watch: &Watch) -> Result<Vec<Row>, Box<dyn Error>> {
+    let repetitions = repetitions(quick);
     let mut rows = Vec::new();
     let mut pendulums = ways::<DoublePendulum, _>("midpoint", Evi::midpoint(0.01));
     pendulums.insert(0, by_hand());
-    rows.extend(measured::<DoublePendulum>(&pendulums, STEPS, repetitions)?);
+    rows.extend(measured::<DoublePendulum>(&pendulums, STEPS, repetitions, watch)?);
     let of_high_order = ways::<DoublePendulum, _>("Galerkin 8", Galerkin::<8>::new(0.05));
-    rows.extend(measured::<DoublePendulum>(&of_high_order, GALERKIN_STEPS, repetitions)?);
+    rows.extend(measured::<DoublePendulum>(&of_high_order, GALERKIN_STEPS, repetitions, watch)?);
     let spherical = ways::<SphericalPendulum, _>("midpoint", Evi::midpoint(0.01));
-    rows.extend(measured::<SphericalPendulum>(&spherical, STEPS, repetitions)?);
+    rows.extend(measured::<SphericalPendulum>(&spherical, STEPS, repetitions, watch)?);
     Ok(rows)
 }
 
@@ -156,11 +167,19 @@ fn by_hand() -> Way<'static> {
 }
 
 /// The fastest of some repetitions of every way, in turn, less the fastest without steps: starts are checked one by one, and are not counted.
-/// Repetitions are short, so that some of them are not disturbed.
-fn measured<S: Family>(ways: &[Way<'_>], steps: u64, repetitions: usize) -> Result<Vec<Row>, Box<dyn Error>> {
+/// Repetitions are short, so that some of them are not disturbed. No rows, if somebody interrupts.
+fn measured<S: Family>(
+    ways: &[Way<'_>],
+    steps: u64,
+    repetitions: usize,
+    watch: &Watch,
+) -> Result<Vec<Row>, Box<dyn Error>> {
     let mut fastest = vec![[f64::INFINITY; 2]; ways.len()];
     let mut errors = vec![0.0; ways.len()];
     for _ in 0..repetitions {
+        if !watch.goes_on(&format!("{}, {}", S::NAME, ways[ways.len() - 1].method)) {
+            return Ok(Vec::new());
+        }
         for (place, way) in ways.iter().enumerate() {
             for (fastest, steps) in fastest[place].iter_mut().zip([0, steps]) {
                 let start = Instant::now();

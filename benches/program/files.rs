@@ -29,13 +29,13 @@ pub fn prepare(out: &Path) -> Result<(), WriteError> {
         .map_err(|cause| WriteError { path: out.into(), cause })
 }
 
-/// Replaces the file by `text`, at once; returns its path.
+/// Replaces the file by `content`, at once; returns its path.
 ///
 /// # Errors
 /// [`WriteError`]; the file is then as it was.
-pub fn replace(path: &Path, text: &str) -> Result<PathBuf, WriteError> {
+pub fn replace(path: &Path, content: &(impl AsRef<[u8]> + ?Sized)) -> Result<PathBuf, WriteError> {
     let new = path.with_extension("new");
-    fs::write(&new, text)
+    fs::write(&new, content)
         .and_then(|()| fs::rename(&new, path))
         .map_err(|cause| WriteError { path: path.into(), cause })?;
     Ok(path.into())

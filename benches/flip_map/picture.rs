@@ -1,10 +1,5 @@
 //! Times as colours.
 
-use std::error::Error;
-use std::fs::File;
-use std::io::BufWriter;
-use std::path::Path;
-
 /// From late to early: colours of equal steps in lightness (viridis, van der Walt & Smith, 2015).
 const COLOURS: [[f64; 3]; 9] = [
     [68.0, 1.0, 84.0],
@@ -28,8 +23,8 @@ fn colour(share_later: f64) -> [u8; 3] {
     std::array::from_fn(|k| ((1.0 - share) * COLOURS[lower][k] + share * COLOURS[lower + 1][k]).round() as u8)
 }
 
-/// Writes a square picture of the times, row by row from the bottom; NaN where there is none. Each colour has the same number of starts.
-pub(crate) fn save(path: &Path, width: usize, times: &[f64]) -> Result<(), Box<dyn Error>> {
+/// A square picture of the times as a PNG file, row by row from the bottom; NaN where there is none. Each colour has the same number of starts.
+pub(crate) fn png(width: usize, times: &[f64]) -> Result<Vec<u8>, png::EncodingError> {
     let mut sorted: Vec<f64> = times.iter().copied().filter(|t| !t.is_nan()).collect();
     sorted.sort_by(f64::total_cmp);
     let of = |t: &f64| {
@@ -40,11 +35,12 @@ pub(crate) fn save(path: &Path, width: usize, times: &[f64]) -> Result<(), Box<d
         colour(1.0 - sooner as f64 / sorted.len() as f64)
     };
     let pixels: Vec<u8> = times.chunks(width).rev().flatten().flat_map(of).collect();
-    let mut encoder = png::Encoder::new(BufWriter::new(File::create(path)?), width as u32, width as u32);
+    let mut file = Vec::new();
+    let mut encoder = png::Encoder::new(&mut file, width as u32, width as u32);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
     let mut writer = encoder.write_header()?;
     writer.write_image_data(&pixels)?;
     writer.finish()?;
-    Ok(())
+    Ok(file)
 }
