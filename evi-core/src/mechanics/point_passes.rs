@@ -23,7 +23,7 @@ use super::point_guess::{FirstPoints, NodeMotion, NodeMultipliers, Nodes, PointG
 use super::{ForcePoint, Mechanics, State};
 use crate::array::Array;
 use crate::linear::{LaneGram, LaneMass};
-use crate::newton::{NotConverged, Progress};
+use crate::newton::{LinearProgress, NotConverged};
 use crate::scalar::{LaneOperation, Lanes, Scalar};
 use crate::scheme::PointTables;
 use crate::system::{LagrangianGradient, MassShape, MechanicalSystem};
@@ -114,7 +114,7 @@ impl<S: MechanicalSystem, const K: usize> PointPasses<S, K> {
         let mut moves: Nodes<S> = nothing();
         let mut jacobian: S::PerJacobianEntry<Lanes> = nothing();
         let mut per_reach = 0.0;
-        let mut progress = Progress::default();
+        let mut progress = LinearProgress::default();
         let (mut is_stale, mut is_last) = (true, false);
         let mut passes = 0;
         loop {
@@ -183,10 +183,10 @@ impl<S: MechanicalSystem, const K: usize> PointPasses<S, K> {
                 differences[i] = differences[i] + moves[i];
             }
             let square = (Scalar::abs(squares) + Scalar::abs(work)).largest();
-            let length = Scalar::sqrt(square) * per_reach;
-            is_stale = length > STALE;
+            let square = square * per_reach * per_reach;
+            is_stale = square > STALE * STALE;
             // Then once more, for the forces where the points have come to.
-            is_last = progress.has_converged_linearly(length)?;
+            is_last = progress.has_converged(square)?;
         }
     }
 
