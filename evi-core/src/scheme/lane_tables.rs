@@ -38,8 +38,6 @@ pub(crate) struct LaneTables {
     pub(crate) weights: Lanes,
     /// `b_K`.
     pub(crate) last_weight: f64,
-    /// 1 at the nodes within the step, 0 at its end.
-    pub(crate) inner: Lanes,
     /// `B`.
     pub(crate) positions: Columns,
     /// `B⁻¹`: from displacements to accelerations.
@@ -62,7 +60,6 @@ impl LaneTables {
             nodes: unit.nodes * Lanes::splat(h),
             weights: unit.weights * Lanes::splat(h),
             last_weight: unit.last_weight * h,
-            inner: unit.inner,
             positions: scaled(&unit.positions, h * h),
             accelerations: scaled(&unit.accelerations, 1.0 / (h * h)),
             velocities: scaled(&unit.velocities, h),
@@ -90,7 +87,6 @@ impl LaneTables {
             nodes: lanes::<K>(|lane| node(lane + 1)),
             weights: lanes::<K>(|lane| weight(accelerated::<K>(lane))),
             last_weight: weight(K),
-            inner: lanes::<K>(|lane| if lane + 1 < K { 1.0 } else { 0.0 }),
             positions,
             accelerations: inverse::<K>(&positions),
             velocities: columns::<K>(|row, col| velocity(accelerated::<K>(row), accelerated::<K>(col))),

@@ -24,7 +24,7 @@ const SLIGHT: f64 = 1e-10;
 pub(super) struct LanePasses<S: MechanicalSystem, const K: usize> {
     step: LaneStep<S, K>,
     instructions: InstructionSet,
-    /// The accelerations of the last steps, the last one first. They affect the number of passes and the last bits of a state,
+    /// The ways of the last steps, the last one first. They affect the number of passes and the last bits of a state,
     /// nothing else.
     past: [S::PerCoordinate<Lanes>; PAST],
     /// How many of them are known.
@@ -132,7 +132,7 @@ impl<S: MechanicalSystem, const K: usize> NodePasses<S> for LanePasses<S, K> {
         let (p, lost_p) = momentum.split();
         state.replace(t, q, v, p)?;
         self.past.swap(0, 1);
-        self.past[0].clone_from(&self.step.accelerations);
+        self.past[0].clone_from(&self.step.ways);
         self.known = PAST.min(self.known + 1);
         Ok([lost_q, lost_p])
     }
@@ -146,8 +146,8 @@ impl<S: MechanicalSystem, const K: usize> NodePasses<S> for LanePasses<S, K> {
 // The storage of the passes is written anew in every step.
 memory!([S: MechanicalSystem, const K: usize] LanePasses<S, K>, |words|
     Self { step: _, instructions: _, past, known, h: _ } => {
-        for accelerations in past {
-            words.lanes(accelerations);
+        for ways in past {
+            words.lanes(ways);
         }
         words.index(known);
     }

@@ -19,7 +19,7 @@ impl<S: MechanicalSystem, const K: usize> LaneStep<S, K> {
         self.inverse_mass.times(|i| force[i])
     }
 
-    /// `p⁻ − p₀ = h Σⱼ bⱼ Fⱼ`, with the force at the end of the step, but for that of the constraints there, at `q_end`.
+    /// `p⁻ − p₀ = Σⱼ kⱼ`, with the force at the end of the step, but for that of the constraints there, at `q_end`.
     pub(crate) fn momentum_gain(
         &self,
         mechanics: &Mechanics<S>,
@@ -29,14 +29,14 @@ impl<S: MechanicalSystem, const K: usize> LaneStep<S, K> {
         let mut velocity = start.v.clone();
         if Self::FORCE_IS_ON_V {
             for i in 0..S::N_COORDINATES {
-                velocity[i] += (self.tables.end_velocity * self.accelerations[i]).sum();
+                velocity[i] += (self.tables.end_velocity * self.ways[i]).sum();
             }
         }
         let mut gain = S::lagrangian_gradient(&mechanics.constants, t_end, q_end, &velocity).force;
         mechanics
             .add_force(ForcePoint { t: t_end, q: q_end, v: &velocity, inputs: &start.inputs }, &mut gain);
         for i in 0..S::N_COORDINATES {
-            gain[i] = self.tables.last_weight * gain[i] + (self.tables.weights * self.forces[i]).sum();
+            gain[i] = self.tables.last_weight * gain[i] + self.impulses[i].sum();
         }
         gain
     }

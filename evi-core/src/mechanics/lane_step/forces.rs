@@ -1,4 +1,4 @@
-//! Forces at the nodes.
+//! Impulses of the nodes.
 
 use super::nodes::{nothing, product};
 use super::{LaneStep, Nodes};
@@ -7,14 +7,14 @@ use crate::scalar::Lanes;
 use crate::system::MechanicalSystem;
 
 impl<S: MechanicalSystem, const K: usize> LaneStep<S, K> {
-    /// `∂L/∂q + f` at the nodes before the last.
+    /// `h b (∂L/∂q + f)` at the nodes before the last.
     #[inline(always)]
-    pub(super) fn free_forces<const FUSED: bool>(
+    pub(super) fn free_impulses<const FUSED: bool>(
         &self,
         start: &State<S>,
         times: Lanes,
         points: &Nodes<S>,
-        accelerations: &Nodes<S>,
+        ways: &Nodes<S>,
     ) -> Nodes<S> {
         let mut forces = S::lagrangian_gradient(&self.constants, times, points, &nothing()).force;
         if S::STRUCTURE.forces.exist() {
@@ -22,7 +22,7 @@ impl<S: MechanicalSystem, const K: usize> LaneStep<S, K> {
             if Self::FORCE_IS_ON_V {
                 for i in 0..S::N_COORDINATES {
                     let v = Lanes::splat(start.v[i]);
-                    velocities[i] = product::<K, FUSED>(&self.tables.velocities, accelerations[i], v);
+                    velocities[i] = product::<K, FUSED>(&self.tables.velocities, ways[i], v);
                 }
             }
             let mut inputs: S::PerInput<Lanes> = nothing();
@@ -34,20 +34,23 @@ impl<S: MechanicalSystem, const K: usize> LaneStep<S, K> {
                 forces[i] = forces[i] + added[i];
             }
         }
+        for i in 0..S::N_COORDINATES {
+            forces[i] = self.tables.weights * forces[i];
+        }
         forces
     }
 
-    /// Subtracts `Gᵀ λ`.
+    /// Subtracts `Gᵀ Λ`.
     #[inline(always)]
     pub(super) fn subtract_constraint_force<const FUSED: bool>(
         &self,
         jacobian: &S::PerJacobianEntry<Lanes>,
         multipliers: &S::PerConstraint<Lanes>,
-        forces: &mut Nodes<S>,
+        impulses: &mut Nodes<S>,
     ) {
         for entry in S::STRUCTURE.jacobian.q {
             let slope = entry.value(self.constants.as_ref(), jacobian.as_ref());
-            forces[entry.col] = (-slope).times_plus::<FUSED>(multipliers[entry.row], forces[entry.col]);
+            impulses[entry.col] = (-slope).times_plus::<FUSED>(multipliers[entry.row], impulses[entry.col]);
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Products with the inverse mass matrix: accelerations, and the Gram matrices of the constraints.
+//! Products with the inverse mass matrix, and the Gram matrices of the constraints.
 
 use super::nodes::nothing;
 use super::{LaneStep, Nodes};
@@ -42,25 +42,27 @@ impl<S: MechanicalSystem, const K: usize> LaneStep<S, K> {
             let slope = entry.value(self.constants.as_ref(), jacobian.as_ref());
             sum[entry.col] = slope.times_plus::<FUSED>(inner[entry.row], sum[entry.col]);
         }
-        self.accelerated::<FUSED>(&sum)
+        applied::<S, FUSED>(&self.inverse_mass, &sum)
     }
+}
 
-    /// `M⁻¹ F`.
-    #[inline(always)]
-    pub(super) fn accelerated<const FUSED: bool>(&self, forces: &Nodes<S>) -> Nodes<S> {
-        let mut accelerations: Nodes<S> = nothing();
-        for i in 0..S::N_COORDINATES {
-            if <AsMass as Coupling<S>>::IS_DIAGONAL {
-                accelerations[i] = Lanes::splat(self.inverse_mass.at(i, i)) * forces[i];
-            } else {
-                for k in 0..S::N_COORDINATES {
-                    let entry = Lanes::splat(self.inverse_mass.at(i, k));
-                    accelerations[i] = entry.times_plus::<FUSED>(forces[k], accelerations[i]);
-                }
+/// `B x` at every node, for a matrix `B` that couples what the mass matrix couples.
+#[inline(always)]
+pub(super) fn applied<S: MechanicalSystem, const FUSED: bool>(
+    matrix: &CoordinateMatrix<S, AsMass>,
+    x: &Nodes<S>,
+) -> Nodes<S> {
+    let mut products: Nodes<S> = nothing();
+    for i in 0..S::N_COORDINATES {
+        if <AsMass as Coupling<S>>::IS_DIAGONAL {
+            products[i] = Lanes::splat(matrix.at(i, i)) * x[i];
+        } else {
+            for k in 0..S::N_COORDINATES {
+                products[i] = Lanes::splat(matrix.at(i, k)).times_plus::<FUSED>(x[k], products[i]);
             }
         }
-        accelerations
     }
+    products
 }
 
 /// Overwrites `gram` with `G M⁻¹ Gᵀ`, its lower triangle.

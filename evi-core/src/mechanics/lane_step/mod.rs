@@ -1,16 +1,18 @@
 //! A Galerkin step of a scene with constant mass by passes over all nodes at once, a node per lane.
 //!
-//! With the accelerations `aⱼ = M⁻¹ Fⱼ` of the total forces `Fⱼ = ∂L/∂q + f − Gᵀλⱼ` at the nodes, the tables of [`LaneTables`] and the Gram
-//! matrices `Sᵢ = Gᵢ M⁻¹ Gᵢᵀ`, a pass is
+//! With the impulses `kⱼ = h bⱼ Fⱼ` of the total forces `Fⱼ = ∂L/∂q + f − Gᵀλⱼ` at the nodes, the ways `yⱼ = h M⁻¹ kⱼ` that they go in a step, the impulses
+//! `Λⱼ = h bⱼ λⱼ` of the constraints, the tables of [`ImpulseTables`] and the Gram matrices `Sᵢ = Gᵢ M⁻¹ Gᵢᵀ`, a pass is
 //!
 //! ```text
-//! qᵢ = q₀ + h cᵢ v₀ + h² Σⱼ Bᵢⱼ aⱼ           ηᵢ = Sᵢ⁻¹ φ(qᵢ)           λ += (B⁻¹ η) / h²
-//! q̃ᵢ = qᵢ − M⁻¹ Gᵢᵀ ηᵢ                        Fⱼ = ∂L/∂q(q̃ⱼ) + f(q̃ⱼ, vⱼ) − G(q̃ⱼ)ᵀ λⱼ
+//! qᵢ = q₀ + cᵢ h M⁻¹ p₀ + Σⱼ sᵢⱼ yⱼ           ηᵢ = Sᵢ⁻¹ φ(qᵢ)           Λ += (b B⁻¹ η) / h
+//! q̃ᵢ = qᵢ − M⁻¹ Gᵢᵀ ηᵢ                        kⱼ = h bⱼ (∂L/∂q(q̃ⱼ) + f(q̃ⱼ, vⱼ)) − G(q̃ⱼ)ᵀ Λⱼ
 //! ```
 //!
 //! `B⁻¹ ⊗ Sᵢ⁻¹` stands for the inverse of the derivative `Gᵢ M⁻¹ Bᵢⱼ Gⱼᵀ` of the constraints by the multipliers: no matrix that couples nodes
 //! is ever formed. A fixed point solves the equations of [`super::galerkin_equations`] exactly, whatever `Sᵢ` is and wherever the first pass begins;
 //! a pass shrinks the error by about `4 (h ω)² ρ(B)`.
+//!
+//! Impulses, and one rounded `h M⁻¹` for them and for `p₀`, leave nothing systematic of the rounding of tables: what one step is off by, another is not.
 
 mod end;
 mod first_guess;
@@ -24,10 +26,11 @@ use crate::array::Array;
 use crate::linear::{Cholesky, LaneGram};
 use crate::newton::{LinearProgress, NotConverged};
 use crate::scalar::{LaneOperation, Lanes};
-use crate::scheme::LaneTables;
+use crate::scheme::ImpulseTables;
 use crate::system::{Entry, MechanicalSystem};
 pub(crate) use end::LaneEnd;
 pub(crate) use first_guess::FirstGuess;
+use gram::applied;
 pub(crate) use nodes::product;
 use nodes::{Nodes, with_start};
 pub(super) use nodes::{from_start, nothing};
@@ -42,7 +45,9 @@ pub(crate) struct LaneStep<S: MechanicalSystem, const K: usize> {
     constants: S::PerConstant<Lanes>,
     inverse_mass: CoordinateMatrix<S, AsMass>,
     pub(crate) legendre: ConstantLegendre<S>,
-    tables: LaneTables,
+    /// `h M⁻¹`.
+    mobility: CoordinateMatrix<S, AsMass>,
+    tables: ImpulseTables,
     /// What a coordinate is multiplied with before lengths are compared: `√Mᵢᵢ` as a power of two.
     units: S::PerCoordinate<f64>,
     /// Of the nodes `1 .. K`.
@@ -51,10 +56,10 @@ pub(crate) struct LaneStep<S: MechanicalSystem, const K: usize> {
     start_gram: LaneGram<S>,
     /// Entries of the Jacobian in one column: the products that Gram matrices of many constraints are made of.
     products: Vec<[Entry; 2]>,
-    /// `aⱼ` of the last passes, `j = 0 .. K−1`.
-    pub(crate) accelerations: Nodes<S>,
-    /// `Fⱼ` of the last passes, `j = 0 .. K−1`.
-    forces: Nodes<S>,
+    /// `yⱼ` of the last passes, `j = 0 .. K−1`.
+    pub(crate) ways: Nodes<S>,
+    /// `kⱼ` of the last passes, `j = 0 .. K−1`.
+    impulses: Nodes<S>,
 }
 
 /// Passes until they have converged, as an operation on lanes.
@@ -97,13 +102,14 @@ impl<S: MechanicalSystem, const K: usize> LaneStep<S, K> {
             constants: Array::from_fn(|i| Lanes::splat(mechanics.constants[i])),
             inverse_mass: CoordinateMatrix::new(Array::from_fn(|i| Array::from_fn(|j| inverse_at(i, j)))),
             legendre: ConstantLegendre::new(mechanics).ok()?,
-            tables: LaneTables::new::<K>(h),
+            mobility: CoordinateMatrix::new(Array::from_fn(|i| Array::from_fn(|j| h * inverse_at(i, j)))),
+            tables: ImpulseTables::new::<K>(h),
             units: Array::from_fn(|i| unit(mass[i][i])),
             gram: LaneGram::<S>::new(coupled.iter().copied(), couples_all),
             start_gram: LaneGram::<S>::new(coupled.iter().copied(), couples_all),
             products: pairs.filter(|[a, b]| a.col == b.col && b.row <= a.row).collect(),
-            accelerations: nothing(),
-            forces: nothing(),
+            ways: nothing(),
+            impulses: nothing(),
         })
     }
 
@@ -115,12 +121,13 @@ impl<S: MechanicalSystem, const K: usize> LaneStep<S, K> {
     ) -> Result<LaneEnd<S>, NotConverged> {
         let times = self.tables.nodes + Lanes::splat(start.t);
         let times_of_points = times.with(K - 1, start.t);
+        let drift = self.mobility.times(|i| self.legendre.moving_momentum(&start.p, i));
         let mut inertial: Nodes<S> = nothing();
         for i in 0..S::N_COORDINATES {
-            inertial[i] = self.tables.nodes * Lanes::splat(start.v[i]);
+            inertial[i] = self.tables.fractions * Lanes::splat(drift[i]);
         }
-        let mut accelerations = self.first_accelerations::<FUSED>(first);
-        let mut differences = self.differences::<FUSED>(&accelerations, &inertial);
+        let mut ways = self.first_ways::<FUSED>(first);
+        let mut differences = self.differences::<FUSED>(&ways, &inertial);
         let mut positions = from_start::<S>(start, &differences);
         // Where forces are evaluated.
         let mut points = with_start::<S, K>(start, &positions);
@@ -166,20 +173,19 @@ impl<S: MechanicalSystem, const K: usize> LaneStep<S, K> {
                     nearest[i] = points[i] - displacements[i];
                 }
             }
-            let mut forces = self.free_forces::<FUSED>(start, times_of_points, &nearest, &accelerations);
+            let mut impulses = self.free_impulses::<FUSED>(start, times_of_points, &nearest, &ways);
             if Self::IS_CONSTRAINED {
                 let (_, at_points) = S::constraint_derivatives(&self.constants, times_of_points, &nearest);
                 if passes == 0 {
-                    multipliers = self.implied_multipliers::<FUSED>(&at_points, &forces, &accelerations);
+                    multipliers = self.implied_multipliers::<FUSED>(&at_points, &impulses, &ways);
                 }
                 for c in 0..S::N_CONSTRAINTS {
-                    multipliers[c] =
-                        product::<K, FUSED>(&self.tables.accelerations, shares[c], multipliers[c]);
+                    multipliers[c] = product::<K, FUSED>(&self.tables.impulses, shares[c], multipliers[c]);
                 }
-                self.subtract_constraint_force::<FUSED>(&at_points, &multipliers, &mut forces);
+                self.subtract_constraint_force::<FUSED>(&at_points, &multipliers, &mut impulses);
             }
-            accelerations = self.accelerated::<FUSED>(&forces);
-            differences = self.differences::<FUSED>(&accelerations, &inertial);
+            ways = applied::<S, FUSED>(&self.mobility, &impulses);
+            differences = self.differences::<FUSED>(&ways, &inertial);
             positions = from_start::<S>(start, &differences);
             points = with_start::<S, K>(start, &positions);
             passes += 1;
@@ -199,17 +205,17 @@ impl<S: MechanicalSystem, const K: usize> LaneStep<S, K> {
             if !f64::is_finite(sum) {
                 return Err(NotConverged { corrections: passes, last_correction: f64::NAN });
             }
-            (self.accelerations, self.forces) = (accelerations, forces);
+            (self.ways, self.impulses) = (ways, impulses);
             return Ok(LaneEnd { difference, passes });
         }
     }
 
-    /// `qᵢ − q₀`, from the accelerations and `h cᵢ v₀`.
+    /// `qᵢ − q₀`, from the ways and `cᵢ h M⁻¹ p₀`.
     #[inline(always)]
-    fn differences<const FUSED: bool>(&self, accelerations: &Nodes<S>, inertial: &Nodes<S>) -> Nodes<S> {
+    fn differences<const FUSED: bool>(&self, ways: &Nodes<S>, inertial: &Nodes<S>) -> Nodes<S> {
         let mut differences: Nodes<S> = nothing();
         for i in 0..S::N_COORDINATES {
-            differences[i] = product::<K, FUSED>(&self.tables.positions, accelerations[i], inertial[i]);
+            differences[i] = product::<K, FUSED>(&self.tables.shares, ways[i], inertial[i]);
         }
         differences
     }
