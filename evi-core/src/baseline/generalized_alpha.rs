@@ -247,8 +247,8 @@ impl<S: MechanicalSystem> GeneralizedAlphaStep<S> {
             let at = MotionPoint { t, q, v, acceleration: &acceleration, inputs: &state.inputs };
             let (mut residual, mut kkt) = self.equations.linearize(&at, per);
             let (constraints, jacobian) = S::constraint_derivatives(&mechanics.constants, t, &at.q);
-            let multipliers = &solution.as_ref()[S::N_COORDINATES..];
-            mechanics.add_constraint_force(jacobian.as_ref(), multipliers, residual.as_mut());
+            let multipliers = Array::from_fn(|c| solution[constraint_index::<S>(c)]);
+            mechanics.add_constraint_force(&jacobian, &multipliers, &mut residual);
             constraint_residual = largest_magnitude(constraints.as_ref().iter().copied());
             kkt.set_upper_jacobian(constants, jacobian.as_ref());
             kkt.set_lower_jacobian(constants, jacobian.as_ref());

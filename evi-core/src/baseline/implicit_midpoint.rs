@@ -4,7 +4,7 @@ use super::equations_of_motion::{EquationsOfMotion, MotionPoint, PerAcceleration
 use super::prediction::Prediction;
 use crate::array::Array;
 use crate::integrator::{IterationFailure, OneStep, Scheme, StepError, Symmetric, Tally};
-use crate::linear::{largest_magnitude, unknowns};
+use crate::linear::{constraint_index, largest_magnitude, unknowns};
 use crate::mechanics::{Mechanics, State};
 use crate::memory::memory;
 use crate::newton::{self, Converged};
@@ -140,8 +140,8 @@ impl<S: MechanicalSystem> ImplicitMidpointStep<S> {
             if S::N_CONSTRAINTS > 0 {
                 let rates = self.equations.moving_jacobian(&at);
                 let jacobian: S::PerJacobianEntry<f64> = Array::from_fn(|k| rates[k].value);
-                let multipliers = &solution.as_ref()[S::N_COORDINATES..];
-                mechanics.add_constraint_force(jacobian.as_ref(), multipliers, residual.as_mut());
+                let multipliers = Array::from_fn(|c| solution[constraint_index::<S>(c)]);
+                mechanics.add_constraint_force(&jacobian, &multipliers, &mut residual);
                 curvature = S::constraint_curvature(&mechanics.constants, t, &at.q, &at.v);
                 for entry in S::STRUCTURE.jacobian.q {
                     curvature[entry.row] +=

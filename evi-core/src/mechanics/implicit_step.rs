@@ -89,7 +89,7 @@ pub(crate) trait ImplicitStep<S: MechanicalSystem> {
     ) -> S::PerUnknown<f64> {
         let (inertial, fixed) = (self.inertia_times(difference), self.start_row(start));
         let mut row = S::PerCoordinate::<f64>::from_fn(|i| inertial[i] + fixed[i] - node_kick[i]);
-        self.mechanics().add_constraint_force(start.jacobian.as_ref(), impulse.as_ref(), row.as_mut());
+        self.mechanics().add_constraint_force(&start.jacobian, impulse, &mut row);
         unknowns::<S>(|i| row[i], |c| at_end[c])
     }
 

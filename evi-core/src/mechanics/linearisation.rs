@@ -163,7 +163,7 @@ impl<S: MechanicalSystem> Mechanics<S> {
         let mut gradient = S::PerCoordinate::<f64>::from_fn(|i| -force[i]);
         if S::N_CONSTRAINTS > 0 {
             let (_, jacobian) = S::constraint_derivatives(&self.constants, t, q);
-            self.add_constraint_force(jacobian.as_ref(), multipliers.as_ref(), gradient.as_mut());
+            self.add_constraint_force(&jacobian, multipliers, &mut gradient);
         }
         gradient
     }

@@ -64,7 +64,7 @@ impl<S: MechanicalSystem> Mechanics<S> {
             if kkt.is_fallback() {
                 tally.count_fallback();
             }
-            let rate = self.constraint_rate(jacobian.as_ref(), &v);
+            let rate = self.constraint_rate(&jacobian, &v);
             let mut correction = unknowns::<S>(|i| unprojected[i] - gradient.momentum[i], |c| -rate[c]);
             kkt.solve(&mut correction);
             for i in 0..S::N_COORDINATES {
@@ -83,7 +83,7 @@ impl<S: MechanicalSystem> Mechanics<S> {
             newton::iterate(|_| correct())?;
         }
         let mut constraint_momentum = S::PerCoordinate::<f64>::from_fn(|_| 0.0);
-        self.add_constraint_force(jacobian.as_ref(), impulse.as_ref(), constraint_momentum.as_mut());
+        self.add_constraint_force(&jacobian, &impulse, &mut constraint_momentum);
         for i in 0..S::N_COORDINATES {
             momentum.terms_mut()[i] -= constraint_momentum[i];
         }
@@ -101,7 +101,7 @@ impl<S: MechanicalSystem> Mechanics<S> {
         v: &mut S::PerCoordinate<f64>,
         impulse: &mut S::PerConstraint<f64>,
     ) {
-        let rate = self.constraint_rate(jacobian.as_ref(), v);
+        let rate = self.constraint_rate(jacobian, v);
         let mut refinement = unknowns::<S>(|_| 0.0, |c| -rate[c]);
         kkt.solve(&mut refinement);
         for i in 0..S::N_COORDINATES {
@@ -138,7 +138,7 @@ impl<S: MechanicalSystem> Mechanics<S> {
             let kkt = kkt.factor_densely()?;
             let displacement = S::PerCoordinate::<f64>::from_fn(|i| q[i] - start[i]);
             let mut pull = self.mass_times(hessian.as_ref(), &displacement);
-            self.add_constraint_force(jacobian.as_ref(), multipliers.as_ref(), pull.as_mut());
+            self.add_constraint_force(&jacobian, &multipliers, &mut pull);
             let mut correction = unknowns::<S>(|i| -pull[i], |c| -residual[c]);
             kkt.solve(&mut correction);
             for i in 0..S::N_COORDINATES {

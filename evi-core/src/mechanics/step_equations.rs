@@ -153,7 +153,7 @@ impl<S: MechanicalSystem, T: InterpolationTable, const K: usize> DiscreteLagrang
         } else {
             self.joint_momentum(start, difference)
         };
-        self.mechanics.subtract_constraint_force(start.jacobian.as_ref(), impulse.as_ref(), gain.as_mut());
+        self.mechanics.subtract_constraint_force(&start.jacobian, impulse, &mut gain);
         gain
     }
 
