@@ -236,22 +236,31 @@ impl<S: MechanicalSystem, const K: usize> PointPasses<S, K> {
 
     #[inline(always)]
     fn factor_gram<const FUSED: bool>(&mut self, jacobian: &S::PerJacobianEntry<Lanes>) {
-        let entries = S::STRUCTURE.jacobian.q;
-        let slope = |entry: &crate::system::Entry| entry.value(self.constants.as_ref(), jacobian.as_ref());
         self.gram.clear();
-        for col in 0..S::N_CONSTRAINTS {
+        for other in 0..S::N_CONSTRAINTS {
             let mut direction: Nodes<S> = nothing();
-            for entry in entries {
-                if entry.row == col {
-                    direction[entry.col] = slope(entry);
-                }
-            }
+            S::for_each_slope(
+                &self.constants,
+                jacobian,
+                #[inline(always)]
+                |row, col, slope| {
+                    if row == other {
+                        direction[col] = slope;
+                    }
+                },
+            );
             self.mass.solve::<FUSED>(&mut direction);
-            for entry in entries {
-                if entry.row >= col {
-                    self.gram.add_product::<FUSED>(entry.row, col, slope(entry), direction[entry.col]);
-                }
-            }
+            let gram = &mut self.gram;
+            S::for_each_slope(
+                &self.constants,
+                jacobian,
+                #[inline(always)]
+                |row, col, slope| {
+                    if row >= other {
+                        gram.add_product::<FUSED>(row, other, slope, direction[col]);
+                    }
+                },
+            );
         }
         self.gram.factor::<FUSED>();
     }
@@ -264,10 +273,12 @@ impl<S: MechanicalSystem, const K: usize> PointPasses<S, K> {
         x: &NodeMultipliers<S>,
     ) -> Nodes<S> {
         let mut sum: Nodes<S> = nothing();
-        for entry in S::STRUCTURE.jacobian.q {
-            let slope = entry.value(self.constants.as_ref(), jacobian.as_ref());
-            sum[entry.col] = slope.times_plus::<FUSED>(x[entry.row], sum[entry.col]);
-        }
+        S::for_each_slope(
+            &self.constants,
+            jacobian,
+            #[inline(always)]
+            |row, col, slope| sum[col] = slope.times_plus::<FUSED>(x[row], sum[col]),
+        );
         sum
     }
 
@@ -304,10 +315,12 @@ impl<S: MechanicalSystem, const K: usize> PointPasses<S, K> {
             for i in 0..n {
                 force[i] = force[i] - held[i];
             }
-            for entry in S::STRUCTURE.jacobian.q {
-                let slope = entry.value(mechanics.constants.as_ref(), start_jacobian.as_ref());
-                at_start.force[entry.col] -= slope * multipliers[entry.row].to_array()[K - 1];
-            }
+            S::for_each_slope(
+                &mechanics.constants,
+                start_jacobian,
+                #[inline(always)]
+                |row, col, slope| at_start.force[col] -= slope * multipliers[row].to_array()[K - 1],
+            );
         }
         for i in 0..n {
             force[i] = force[i].with(K - 1, at_start.force[i]);

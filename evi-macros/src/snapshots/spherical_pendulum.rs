@@ -494,6 +494,16 @@ const _: () = {
             visit(0usize, 0usize, 1usize, g[1usize]);
             visit(0usize, 0usize, 2usize, g[2usize]);
         }
+        #[inline(always)]
+        fn for_each_gram_product<T: ::core::marker::Copy>(
+            c: &Self::PerConstant<T>,
+            g: &Self::PerJacobianEntry<T>,
+            mut visit: impl ::core::ops::FnMut(usize, usize, usize, T, T),
+        ) {
+            visit(0usize, 0usize, 0usize, g[0usize], g[0usize]);
+            visit(0usize, 0usize, 1usize, g[1usize], g[1usize]);
+            visit(0usize, 0usize, 2usize, g[2usize], g[2usize]);
+        }
     }
     #[automatically_derived]
     #[allow(unused, non_snake_case, trivial_numeric_casts, clippy::all)]

@@ -7,7 +7,7 @@ use crate::array::Array;
 use crate::integrator::{StepError, Tally};
 use crate::linear::{Factorization, largest_magnitude};
 use crate::mechanics::{
-    FirstGuess, LaneEnd, LaneStep, Lost, Mechanics, Passes, ProjectionError, RoundOff, State, Sum,
+    FirstGuess, LaneEnd, LaneStep, Lost, Mechanics, Passes, Points, ProjectionError, RoundOff, State, Sum,
 };
 use crate::memory::memory;
 use crate::scalar::{InstructionSet, Lanes};
@@ -49,6 +49,18 @@ impl<S: MechanicalSystem, const K: usize> LanePasses<S, K> {
 
     pub(super) const fn instruction_set(&self) -> InstructionSet {
         self.instructions
+    }
+
+    /// The points of the step from `start` that was taken last, if it was by passes; as equations of all points have them.
+    pub(super) fn points_found(&self, start: &State<S>) -> Option<Points<S, K>> {
+        if self.known == 0 {
+            return None;
+        }
+        let (differences, impulses) = self.step.points_found(start);
+        Some(Points {
+            differences,
+            impulses: impulses.map(|of_node| Array::from_fn(|c| self.h * of_node[c])),
+        })
     }
 
     /// The end of the step without a past.

@@ -1,6 +1,7 @@
 //! The end of a step.
 
 use super::LaneStep;
+use crate::array::Array;
 use crate::mechanics::{ForcePoint, Mechanics, State};
 use crate::system::MechanicalSystem;
 
@@ -39,5 +40,19 @@ impl<S: MechanicalSystem, const K: usize> LaneStep<S, K> {
             gain[i] = self.tables.last_weight * gain[i] + self.impulses[i].sum();
         }
         gain
+    }
+
+    /// The points of the last passes, which began at `start`: `qₐ − q₀` of the nodes `a = 1 .. K`, and `Λₐ` of `a = 0 .. K−1`.
+    pub(crate) fn points_found(
+        &self,
+        start: &State<S>,
+    ) -> ([S::PerCoordinate<f64>; K], [S::PerConstraint<f64>; K]) {
+        let differences = self.differences::<false>(&self.ways, &self.inertial(start));
+        let differences = |a: usize| Array::from_fn(|i| differences[i].to_array()[a]);
+        let impulses = |a: usize| {
+            let lane = if a == 0 { K - 1 } else { a - 1 };
+            Array::from_fn(|c| self.multipliers[c].to_array()[lane])
+        };
+        (core::array::from_fn(differences), core::array::from_fn(impulses))
     }
 }

@@ -48,11 +48,15 @@ impl<S: MechanicalSystem, const K: usize> LaneStep<S, K> {
         let free = applied::<S, FUSED>(&self.mobility, impulses);
         let per_step = Lanes::splat(self.tables.per_step);
         let mut multipliers: S::PerConstraint<Lanes> = nothing();
-        for entry in S::STRUCTURE.jacobian.q {
-            let slope = entry.value(self.constants.as_ref(), jacobian.as_ref());
-            let held = (free[entry.col] - ways[entry.col]) * per_step;
-            multipliers[entry.row] = slope.times_plus::<FUSED>(held, multipliers[entry.row]);
-        }
+        S::for_each_slope(
+            &self.constants,
+            jacobian,
+            #[inline(always)]
+            |row, col, slope| {
+                let held = (free[col] - ways[col]) * per_step;
+                multipliers[row] = slope.times_plus::<FUSED>(held, multipliers[row]);
+            },
+        );
         self.start_gram.solve::<FUSED>(&mut multipliers);
         multipliers
     }

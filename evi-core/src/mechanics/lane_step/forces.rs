@@ -48,9 +48,13 @@ impl<S: MechanicalSystem, const K: usize> LaneStep<S, K> {
         multipliers: &S::PerConstraint<Lanes>,
         impulses: &mut Nodes<S>,
     ) {
-        for entry in S::STRUCTURE.jacobian.q {
-            let slope = entry.value(self.constants.as_ref(), jacobian.as_ref());
-            impulses[entry.col] = (-slope).times_plus::<FUSED>(multipliers[entry.row], impulses[entry.col]);
-        }
+        S::for_each_slope(
+            &self.constants,
+            jacobian,
+            #[inline(always)]
+            |row, col, slope| {
+                impulses[col] = (-slope).times_plus::<FUSED>(multipliers[row], impulses[col]);
+            },
+        );
     }
 }

@@ -5,25 +5,21 @@ use super::{LaneStep, Nodes};
 use crate::linear::LaneGram;
 use crate::mechanics::{AsMass, CoordinateMatrix, Coupling};
 use crate::scalar::Lanes;
-use crate::system::{Entry, MechanicalSystem};
-
-/// Up to so many entries of the Jacobian, loops over pairs of them are unrolled.
-const MOST_UNROLLED: usize = 16;
+use crate::system::MechanicalSystem;
 
 impl<S: MechanicalSystem, const K: usize> LaneStep<S, K> {
     /// Overwrites the Gram matrices of the nodes `1 .. K` with their factors.
     #[inline(always)]
     pub(super) fn factor_gram<const FUSED: bool>(&mut self, jacobian: &S::PerJacobianEntry<Lanes>) {
-        add_gram::<S, FUSED>(&self.inverse_mass, &self.products, &self.constants, jacobian, &mut self.gram);
+        add_gram::<S, FUSED>(&self.inverse_mass, &self.constants, jacobian, &mut self.gram);
         self.gram.factor::<FUSED>();
     }
 
     /// Overwrites those of the nodes `0 .. K−1` with theirs.
     #[inline(always)]
     pub(super) fn factor_start_gram<const FUSED: bool>(&mut self, jacobian: &S::PerJacobianEntry<Lanes>) {
-        let (mass, products, gram) = (&self.inverse_mass, &self.products, &mut self.start_gram);
-        add_gram::<S, FUSED>(mass, products, &self.constants, jacobian, gram);
-        gram.factor::<FUSED>();
+        add_gram::<S, FUSED>(&self.inverse_mass, &self.constants, jacobian, &mut self.start_gram);
+        self.start_gram.factor::<FUSED>();
     }
 
     /// `M⁻¹ Gᵀ η` within the step, and nothing at its end, where no force is evaluated.
@@ -38,10 +34,12 @@ impl<S: MechanicalSystem, const K: usize> LaneStep<S, K> {
             inner[c] = shares[c] * self.tables.inner;
         }
         let mut sum: Nodes<S> = nothing();
-        for entry in S::STRUCTURE.jacobian.q {
-            let slope = entry.value(self.constants.as_ref(), jacobian.as_ref());
-            sum[entry.col] = slope.times_plus::<FUSED>(inner[entry.row], sum[entry.col]);
-        }
+        S::for_each_slope(
+            &self.constants,
+            jacobian,
+            #[inline(always)]
+            |row, col, slope| sum[col] = slope.times_plus::<FUSED>(inner[row], sum[col]),
+        );
         applied::<S, FUSED>(&self.inverse_mass, &sum)
     }
 }
@@ -69,46 +67,47 @@ pub(super) fn applied<S: MechanicalSystem, const FUSED: bool>(
 #[inline(always)]
 fn add_gram<S: MechanicalSystem, const FUSED: bool>(
     inverse_mass: &CoordinateMatrix<S, AsMass>,
-    products: &[[Entry; 2]],
     constants: &S::PerConstant<Lanes>,
     jacobian: &S::PerJacobianEntry<Lanes>,
     gram: &mut LaneGram<S>,
 ) {
-    let entries = S::STRUCTURE.jacobian.q;
-    let slope = |entry: &Entry| entry.value(constants.as_ref(), jacobian.as_ref());
     gram.clear();
     if <AsMass as Coupling<S>>::IS_DIAGONAL {
-        if entries.len() <= MOST_UNROLLED {
-            for a in entries {
-                for b in entries {
-                    if b.col == a.col && b.row <= a.row {
-                        let scaled = Lanes::splat(inverse_mass.at(a.col, a.col)) * slope(a);
-                        gram.add_product::<FUSED>(a.row, b.row, scaled, slope(b));
-                    }
-                }
-            }
-        } else {
-            for [a, b] in products {
-                let scaled = Lanes::splat(inverse_mass.at(a.col, a.col)) * slope(a);
-                gram.add_product::<FUSED>(a.row, b.row, scaled, slope(b));
-            }
-        }
+        S::for_each_gram_product(
+            constants,
+            jacobian,
+            #[inline(always)]
+            |row, other, col, slope, other_slope| {
+                let scaled = Lanes::splat(inverse_mass.at(col, col)) * slope;
+                gram.add_product::<FUSED>(row, other, scaled, other_slope);
+            },
+        );
         return;
     }
-    for col in 0..S::N_CONSTRAINTS {
+    for other in 0..S::N_CONSTRAINTS {
         let mut direction: Nodes<S> = nothing();
-        for entry in entries {
-            if entry.row == col {
-                for i in 0..S::N_COORDINATES {
-                    let mass = Lanes::splat(inverse_mass.at(i, entry.col));
-                    direction[i] = mass.times_plus::<FUSED>(slope(entry), direction[i]);
+        S::for_each_slope(
+            constants,
+            jacobian,
+            #[inline(always)]
+            |row, col, slope| {
+                if row == other {
+                    for i in 0..S::N_COORDINATES {
+                        let mass = Lanes::splat(inverse_mass.at(i, col));
+                        direction[i] = mass.times_plus::<FUSED>(slope, direction[i]);
+                    }
                 }
-            }
-        }
-        for entry in entries {
-            if entry.row >= col {
-                gram.add_product::<FUSED>(entry.row, col, slope(entry), direction[entry.col]);
-            }
-        }
+            },
+        );
+        S::for_each_slope(
+            constants,
+            jacobian,
+            #[inline(always)]
+            |row, col, slope| {
+                if row >= other {
+                    gram.add_product::<FUSED>(row, other, slope, direction[col]);
+                }
+            },
+        );
     }
 }

@@ -27,12 +27,12 @@ use crate::linear::{Cholesky, LaneGram};
 use crate::newton::{LinearProgress, NotConverged};
 use crate::scalar::{LaneOperation, Lanes};
 use crate::scheme::ImpulseTables;
-use crate::system::{Entry, MechanicalSystem};
+use crate::system::MechanicalSystem;
 pub(crate) use end::LaneEnd;
 pub(crate) use first_guess::FirstGuess;
 use gram::applied;
+use nodes::Nodes;
 pub(crate) use nodes::product;
-use nodes::{Nodes, with_start};
 pub(super) use nodes::{from_start, nothing};
 pub(crate) use reach::reach;
 use reach::unit;
@@ -54,12 +54,12 @@ pub(crate) struct LaneStep<S: MechanicalSystem, const K: usize> {
     gram: LaneGram<S>,
     /// Of the nodes `0 .. K−1`.
     start_gram: LaneGram<S>,
-    /// Entries of the Jacobian in one column: the products that Gram matrices of many constraints are made of.
-    products: Vec<[Entry; 2]>,
     /// `yⱼ` of the last passes, `j = 0 .. K−1`.
     pub(crate) ways: Nodes<S>,
     /// `kⱼ` of the last passes, `j = 0 .. K−1`.
     impulses: Nodes<S>,
+    /// `Λⱼ` of the last passes, `j = 0 .. K−1`.
+    multipliers: S::PerConstraint<Lanes>,
 }
 
 /// Passes until they have converged, as an operation on lanes.
@@ -96,8 +96,6 @@ impl<S: MechanicalSystem, const K: usize> LaneStep<S, K> {
         let inverse_at = |i: usize, j: usize| if is_coupled(i, j) { inverse.at(i, j) } else { 0.0 };
         let couples_all = !<AsMass as Coupling<S>>::IS_DIAGONAL;
         let coupled = S::STRUCTURE.constraint_graph;
-        let entries = S::STRUCTURE.jacobian.q;
-        let pairs = entries.iter().flat_map(|a| entries.iter().map(move |b| [*a, *b]));
         Some(Self {
             constants: Array::from_fn(|i| Lanes::splat(mechanics.constants[i])),
             inverse_mass: CoordinateMatrix::new(Array::from_fn(|i| Array::from_fn(|j| inverse_at(i, j)))),
@@ -107,9 +105,9 @@ impl<S: MechanicalSystem, const K: usize> LaneStep<S, K> {
             units: Array::from_fn(|i| unit(mass[i][i])),
             gram: LaneGram::<S>::new(coupled.iter().copied(), couples_all),
             start_gram: LaneGram::<S>::new(coupled.iter().copied(), couples_all),
-            products: pairs.filter(|[a, b]| a.col == b.col && b.row <= a.row).collect(),
             ways: nothing(),
             impulses: nothing(),
+            multipliers: nothing(),
         })
     }
 
@@ -121,16 +119,11 @@ impl<S: MechanicalSystem, const K: usize> LaneStep<S, K> {
     ) -> Result<LaneEnd<S>, NotConverged> {
         let times = self.tables.nodes + Lanes::splat(start.t);
         let times_of_points = times.with(K - 1, start.t);
-        let drift = self.mobility.times(|i| self.legendre.moving_momentum(&start.p, i));
-        let mut inertial: Nodes<S> = nothing();
-        for i in 0..S::N_COORDINATES {
-            inertial[i] = self.tables.fractions * Lanes::splat(drift[i]);
-        }
+        let inertial = self.inertial(start);
         let mut ways = self.first_ways::<FUSED>(first);
         let mut differences = self.differences::<FUSED>(&ways, &inertial);
         let mut positions = from_start::<S>(start, &differences);
-        // Where forces are evaluated.
-        let mut points = with_start::<S, K>(start, &positions);
+        let mut points = self.points::<FUSED>(start, &differences);
         let mut nearest = points.clone();
         let mut multipliers: S::PerConstraint<Lanes> = nothing();
         let mut jacobian: S::PerJacobianEntry<Lanes> = nothing();
@@ -187,7 +180,7 @@ impl<S: MechanicalSystem, const K: usize> LaneStep<S, K> {
             ways = applied::<S, FUSED>(&self.mobility, &impulses);
             differences = self.differences::<FUSED>(&ways, &inertial);
             positions = from_start::<S>(start, &differences);
-            points = with_start::<S, K>(start, &positions);
+            points = self.points::<FUSED>(start, &differences);
             passes += 1;
             let square = squares.largest().abs() * per_reach;
             is_stale = square > STALE * STALE;
@@ -205,9 +198,31 @@ impl<S: MechanicalSystem, const K: usize> LaneStep<S, K> {
             if !f64::is_finite(sum) {
                 return Err(NotConverged { corrections: passes, last_correction: f64::NAN });
             }
-            (self.ways, self.impulses) = (ways, impulses);
+            (self.ways, self.impulses, self.multipliers) = (ways, impulses, multipliers);
             return Ok(LaneEnd { difference, passes });
         }
+    }
+
+    /// `cᵢ h M⁻¹ p₀`.
+    #[inline(always)]
+    fn inertial(&self, start: &State<S>) -> Nodes<S> {
+        let drift = self.mobility.times(|i| self.legendre.moving_momentum(&start.p, i));
+        let mut inertial: Nodes<S> = nothing();
+        for i in 0..S::N_COORDINATES {
+            inertial[i] = self.tables.fractions * Lanes::splat(drift[i]);
+        }
+        inertial
+    }
+
+    /// Where forces are evaluated: at the points with the start in the place of the end.
+    #[inline(always)]
+    fn points<const FUSED: bool>(&self, start: &State<S>, differences: &Nodes<S>) -> Nodes<S> {
+        let mut points: Nodes<S> = nothing();
+        for i in 0..S::N_COORDINATES {
+            // Exactly `q₀` or `q₀ + d`; a lane that nothing reads would split the register that it is in.
+            points[i] = differences[i].times_plus::<FUSED>(self.tables.inner, Lanes::splat(start.q[i]));
+        }
+        points
     }
 
     /// `qᵢ − q₀`, from the ways and `cᵢ h M⁻¹ p₀`.

@@ -45,16 +45,3 @@ pub(in crate::mechanics) fn from_start<S: MechanicalSystem>(
     }
     positions
 }
-
-/// `K` points with the start in the place of the end: where the forces of a step are evaluated.
-#[inline(always)]
-pub(super) fn with_start<S: MechanicalSystem, const K: usize>(
-    start: &State<S>,
-    positions: &Nodes<S>,
-) -> Nodes<S> {
-    let mut points: Nodes<S> = nothing();
-    for i in 0..S::N_COORDINATES {
-        points[i] = positions[i].with(K - 1, start.q[i]);
-    }
-    points
-}
