@@ -102,13 +102,20 @@ impl<S: MechanicalSystem, const K: usize> GaussPasses<S, K> {
             self.add_forces(start, times, &q, &velocities, &mut gradient.force);
             let mut inertia: Nodes<S> = Array::filled(Lanes::ZERO);
             self.mass.clear();
-            for entry in S::STRUCTURE.hessian.vv {
-                let value = entry.value(self.constants.as_ref(), hessian.as_ref());
-                self.mass.set(entry.row, entry.col, value);
-                if entry.row == entry.col {
-                    inertia[entry.row] = value;
-                }
-            }
+            let mass = &mut self.mass;
+            S::for_each_vv(
+                &self.constants,
+                &hessian,
+                #[inline(always)]
+                |row, col, value| {
+                    if row >= col {
+                        mass.set(row, col, value);
+                    }
+                    if row == col {
+                        inertia[row] = value;
+                    }
+                },
+            );
             self.mass.factor::<FUSED>();
             let mut correction: Nodes<S> = Array::filled(Lanes::ZERO);
             for i in 0..n {

@@ -110,9 +110,9 @@ pub(crate) trait ImplicitStep<S: MechanicalSystem> {
         let mut kkt = Kkt::zero();
         solution.node_kick = self.node_kick(start, &solution.difference, Some(&mut kkt));
         let (residual, jacobian) = self.constraints_at_end(start, &solution.difference);
-        let constants = self.mechanics().constants.as_ref();
-        kkt.set_upper_jacobian(constants, start.jacobian.as_ref());
-        kkt.set_lower_jacobian(constants, jacobian.as_ref());
+        let constants = &self.mechanics().constants;
+        kkt.set_upper_jacobian(constants, &start.jacobian);
+        kkt.set_lower_jacobian(constants, &jacobian);
         (self.residual(start, solution, &residual), kkt)
     }
 

@@ -257,8 +257,8 @@ impl<S: MechanicalSystem> Mechanics<S> {
                     kkt.add_block(row, col, stiffness[row][col]);
                 }
             }
-            kkt.set_upper_jacobian(self.constants.as_ref(), jacobian.as_ref());
-            kkt.set_lower_jacobian(self.constants.as_ref(), jacobian.as_ref());
+            kkt.set_upper_jacobian(&self.constants, &jacobian);
+            kkt.set_lower_jacobian(&self.constants, &jacobian);
             let kkt = kkt.factor_densely().map_err(|_| NoEquilibrium::Neutral)?;
             let mut correction = unknowns::<S>(|i| -gradient[i], |c| -residual[c]);
             kkt.solve(&mut correction);

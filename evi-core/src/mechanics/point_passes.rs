@@ -223,13 +223,20 @@ impl<S: MechanicalSystem, const K: usize> PointPasses<S, K> {
         let mut inertia: Nodes<S> = nothing();
         let (_, hessian) = S::lagrangian_derivatives(&self.constants, times, q, v);
         self.mass.clear();
-        for entry in S::STRUCTURE.hessian.vv {
-            let value = entry.value(self.constants.as_ref(), hessian.as_ref());
-            self.mass.set(entry.row, entry.col, value);
-            if entry.row == entry.col {
-                inertia[entry.row] = Scalar::abs(value);
-            }
-        }
+        let mass = &mut self.mass;
+        S::for_each_vv(
+            &self.constants,
+            &hessian,
+            #[inline(always)]
+            |row, col, value| {
+                if row >= col {
+                    mass.set(row, col, value);
+                }
+                if row == col {
+                    inertia[row] = Scalar::abs(value);
+                }
+            },
+        );
         self.mass.factor::<FUSED>();
         inertia
     }

@@ -187,6 +187,27 @@ pub trait MechanicalSystem: Sized {
         }
     }
 
+    /// Calls `visit(row, col, ∂²L/∂v[row]∂v[col])` for every entry that is not zero, above the diagonal too. Written out as
+    /// [`for_each_slope`](Self::for_each_slope) is.
+    #[inline(always)]
+    fn for_each_vv<T: Copy>(
+        constants: &Self::PerConstant<T>,
+        hessian: &Self::PerHessianEntry<T>,
+        visit: impl FnMut(usize, usize, T),
+    ) {
+        pattern::for_each_of_both(Self::STRUCTURE.hessian.vv, constants.as_ref(), hessian.as_ref(), visit);
+    }
+
+    /// Calls `visit(row, col, ∂²L/∂q[row]∂q[col])` in the same way.
+    #[inline(always)]
+    fn for_each_qq<T: Copy>(
+        constants: &Self::PerConstant<T>,
+        hessian: &Self::PerHessianEntry<T>,
+        visit: impl FnMut(usize, usize, T),
+    ) {
+        pattern::for_each_of_both(Self::STRUCTURE.hessian.qq, constants.as_ref(), hessian.as_ref(), visit);
+    }
+
     /// `f(t, q, v, u)`: the generalized forces that are no derivatives of `L`, so that
     /// `d/dt ∂L/∂v − ∂L/∂q + Gᵀλ = f`. The sum of the items `force` and of `−∂D/∂v` for the item `dissipation`; zero
     /// without such items.

@@ -64,6 +64,23 @@ pub(super) const fn is_constant(entries: &[Entry]) -> bool {
     true
 }
 
+/// Calls `visit(row, col, value)` for every entry of a lower triangle, and for what mirrors it.
+#[inline(always)]
+pub(super) fn for_each_of_both<T: Copy>(
+    entries: &[Entry],
+    constants: &[T],
+    varying: &[T],
+    mut visit: impl FnMut(usize, usize, T),
+) {
+    for entry in entries {
+        let value = entry.value(constants, varying);
+        visit(entry.row, entry.col, value);
+        if entry.row != entry.col {
+            visit(entry.col, entry.row, value);
+        }
+    }
+}
+
 /// The structurally nonzero derivatives of `φ`.
 #[derive(Clone, Copy, Debug)]
 pub struct JacobianPattern {

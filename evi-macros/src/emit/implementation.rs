@@ -92,7 +92,7 @@ pub(super) fn mechanical_system(
         kernels.constraint_curvature(&programs.constraint_curvature),
     ];
     let kernels: TokenStream = kernels.into_iter().chain(optional.into_iter().flatten()).collect();
-    let slopes = patterns::slopes(&programs.structure);
+    let loops = patterns::loops(&programs.structure);
     let system = |report: TokenStream| {
         quote! {
             const _: () = {
@@ -113,7 +113,7 @@ pub(super) fn mechanical_system(
                     }
 
                     #kernels
-                    #slopes
+                    #loops
                 }
 
                 #frequencies

@@ -1,15 +1,22 @@
-//! Loops over the entries of the constraint Jacobian, written out.
+//! Loops over the entries of derivatives, written out.
 
 use proc_macro2::TokenStream;
-use quote::quote;
+use quote::{format_ident, quote};
 
 use crate::structure::{Entry, EntryValue, Structure};
 
 /// Beyond so many calls a loop takes their place: the trait's default.
 const LARGEST_UNROLLED: usize = 500;
 
-/// `for_each_slope`, `for_each_slope_pair` and `for_each_gram_product`.
-pub(super) fn slopes(structure: &Structure) -> TokenStream {
+/// `for_each_slope`, `for_each_slope_pair`, `for_each_gram_product`, `for_each_vv` and `for_each_qq`.
+pub(super) fn loops(structure: &Structure) -> TokenStream {
+    let slopes = slopes(structure);
+    let vv = symmetric("for_each_vv", &structure.hessian_vv);
+    let qq = symmetric("for_each_qq", &structure.hessian_qq);
+    quote!(#slopes #vv #qq)
+}
+
+fn slopes(structure: &Structure) -> TokenStream {
     let entries = &structure.jacobian_q;
     let pairs: Vec<(&Entry, &Entry)> = entries
         .iter()
@@ -20,16 +27,16 @@ pub(super) fn slopes(structure: &Structure) -> TokenStream {
         return TokenStream::new();
     }
     let products = pairs.iter().filter(|(entry, other)| other.row <= entry.row).map(|(entry, other)| {
-        let (Entry { row, col, .. }, values) = (entry, [slope(entry), slope(other)]);
+        let (Entry { row, col, .. }, values) = (entry, [value(entry, &quote!(g)), value(other, &quote!(g))]);
         let other = other.row;
         quote!(visit(#row, #other, #col, #(#values),*);)
     });
     let slopes = entries.iter().map(|entry| {
-        let (Entry { row, col, .. }, slope) = (entry, slope(entry));
+        let (Entry { row, col, .. }, slope) = (entry, value(entry, &quote!(g)));
         quote!(visit(#row, #col, #slope);)
     });
     let pairs = pairs.iter().map(|(entry, other)| {
-        let (Entry { row, col, .. }, slope, other) = (entry, slope(entry), other.row);
+        let (Entry { row, col, .. }, slope, other) = (entry, value(entry, &quote!(g)), other.row);
         quote!(visit(#row, #other, #col, #slope);)
     });
     quote! {
@@ -62,9 +69,33 @@ pub(super) fn slopes(structure: &Structure) -> TokenStream {
     }
 }
 
-fn slope(entry: &Entry) -> TokenStream {
+/// A lower triangle, with what mirrors it.
+fn symmetric(name: &str, entries: &[Entry]) -> TokenStream {
+    if entries.is_empty() || entries.len() > LARGEST_UNROLLED {
+        return TokenStream::new();
+    }
+    let calls = entries.iter().map(|entry| {
+        let (&Entry { row, col, .. }, value) = (entry, value(entry, &quote!(h)));
+        let mirrored = (row != col).then(|| quote!(visit(#col, #row, #value);));
+        quote!(visit(#row, #col, #value); #mirrored)
+    });
+    let name = format_ident!("{name}");
+    quote! {
+        #[inline(always)]
+        fn #name<T: ::core::marker::Copy>(
+            c: &Self::PerConstant<T>,
+            h: &Self::PerHessianEntry<T>,
+            mut visit: impl ::core::ops::FnMut(usize, usize, T),
+        ) {
+            #(#calls)*
+        }
+    }
+}
+
+/// A constant, or what the kernel has returned in the array that is named.
+fn value(entry: &Entry, kernel: &TokenStream) -> TokenStream {
     match entry.value {
         EntryValue::Constant(slot) => quote!(c[#slot]),
-        EntryValue::Varying(index) => quote!(g[#index]),
+        EntryValue::Varying(index) => quote!(#kernel[#index]),
     }
 }

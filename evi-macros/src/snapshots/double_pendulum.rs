@@ -623,6 +623,17 @@ const _: () = {
             visit(1usize, 1usize, 2usize, g[4usize], g[4usize]);
             visit(1usize, 1usize, 3usize, g[5usize], g[5usize]);
         }
+        #[inline(always)]
+        fn for_each_vv<T: ::core::marker::Copy>(
+            c: &Self::PerConstant<T>,
+            h: &Self::PerHessianEntry<T>,
+            mut visit: impl ::core::ops::FnMut(usize, usize, T),
+        ) {
+            visit(0usize, 0usize, c[0usize]);
+            visit(1usize, 1usize, c[0usize]);
+            visit(2usize, 2usize, c[1usize]);
+            visit(3usize, 3usize, c[1usize]);
+        }
     }
     #[automatically_derived]
     #[allow(unused, non_snake_case, trivial_numeric_casts, clippy::all)]

@@ -504,6 +504,16 @@ const _: () = {
             visit(0usize, 0usize, 1usize, g[1usize], g[1usize]);
             visit(0usize, 0usize, 2usize, g[2usize], g[2usize]);
         }
+        #[inline(always)]
+        fn for_each_vv<T: ::core::marker::Copy>(
+            c: &Self::PerConstant<T>,
+            h: &Self::PerHessianEntry<T>,
+            mut visit: impl ::core::ops::FnMut(usize, usize, T),
+        ) {
+            visit(0usize, 0usize, c[0usize]);
+            visit(1usize, 1usize, c[0usize]);
+            visit(2usize, 2usize, c[0usize]);
+        }
     }
     #[automatically_derived]
     #[allow(unused, non_snake_case, trivial_numeric_casts, clippy::all)]
