@@ -224,7 +224,7 @@ impl<S: MechanicalSystem, const K: usize> GalerkinLanes<S, K> {
         self.multipliers[j] = multipliers;
     }
 
-    /// One over what steps from `state` are found to the round-off of, in the metric of the masses: as in `mechanics/lane_step.rs`.
+    /// One over what steps from `state` are found to the round-off of, in the metric of the masses: as in `mechanics/lane_step`.
     #[inline(always)]
     pub(super) fn per_reach(&self, state: &LaneState<S>) -> Lanes {
         /// A step of an eighth of the configuration is not short.
