@@ -100,6 +100,7 @@ fn scenes_of_every_structure_move_side_by_side_as_alone() {
     // A mass that varies, and constraints; constraints and a potential that vary with time; friction.
     let squeezer = AndrewsSqueezer::STANDARD;
     check_twice(squeezer, squeezer.standard_start(), Evi::midpoint(5e-5), 1e-3);
+    check_twice(squeezer, squeezer.standard_start(), Galerkin::<3>::new(2e-4), 1e-3);
     check_twice(CarAxis::STANDARD, CarAxis::STANDARD.standard_start(), Evi::simpson(0.01), 0.3);
     let damped = DrivenPendulum::STANDARD;
     check_twice(damped, damped.horizontal(), Evi::midpoint(0.01), 0.3);

@@ -1,6 +1,6 @@
 //! A scene whose elements have been prepared: what it adds up, at one point.
 
-use super::elements::{Elements, Repeated};
+use super::elements::{Elements, LanePoint, Repeated};
 use super::number::Number;
 use super::{AssembledSystem, AssemblyError, Family, FamilyVisitor};
 use crate::scalar::{InstructionSet, Lanes, Scalar};
@@ -27,7 +27,7 @@ pub(super) struct Assembly {
 /// A family, and where its constraints and slopes stand among those of the scene.
 pub(super) struct PlacedFamily {
     pub(super) elements: Box<dyn Elements>,
-    rows: std::ops::Range<usize>,
+    pub(super) rows: std::ops::Range<usize>,
     slopes: std::ops::Range<usize>,
 }
 
@@ -201,6 +201,21 @@ impl Assembly {
         force.fill(Lanes::ZERO);
         for family in self.families.iter().filter(|family| family.has_force()) {
             family.elements.add_lane_force(instructions, t, q, v, force);
+        }
+    }
+
+    /// Overwrites `∂L/∂q + f` and `∂L/∂v` at a node per lane.
+    pub(super) fn lane_gradient(
+        &self,
+        instructions: InstructionSet,
+        at: LanePoint<'_>,
+        force: &mut [Lanes],
+        momentum: &mut [Lanes],
+    ) {
+        force.fill(Lanes::ZERO);
+        momentum.fill(Lanes::ZERO);
+        for family in &self.families {
+            family.elements.add_lane_gradient(instructions, at, force, momentum);
         }
     }
 

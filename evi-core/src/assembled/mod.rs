@@ -77,6 +77,7 @@ mod gram;
 mod history;
 mod implicit;
 mod kicked;
+mod lane_saddle;
 mod mass;
 mod nodes;
 mod number;

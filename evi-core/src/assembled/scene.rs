@@ -1,6 +1,7 @@
 //! A scene made ready for its steps: what is constant over a run, and storage for what is not.
 
 use super::assembly::{Assembly, ConstraintsAt, Point};
+use super::galerkin::PointMatrix;
 use super::gram::Gram;
 use super::mass::{ConstantMass, check_inertia, mass_matrix};
 use super::saddle::Saddle;
@@ -15,6 +16,8 @@ pub struct PreparedScene {
     pub(super) inertia: Option<ConstantInertia>,
     /// Positions and multipliers together, where steps need it.
     pub(super) saddle: Option<Saddle>,
+    /// All points of a Galerkin step together, where there are such steps and the matrix is not too large.
+    pub(super) points: Option<PointMatrix>,
     pub(super) space: Space,
 }
 
@@ -90,7 +93,7 @@ impl PreparedScene {
             Some(_) => None,
             None => Some(Saddle::new(&assembly).map_err(|fill| too_much(&assembly, fill))?),
         };
-        Ok(Self { space: Space::of(&assembly), assembly, inertia, saddle })
+        Ok(Self { space: Space::of(&assembly), assembly, inertia, saddle, points: None })
     }
 
     /// Makes sure that there is a saddle-point matrix.
@@ -100,6 +103,13 @@ impl PreparedScene {
             self.saddle = Some(saddle);
         }
         Ok(())
+    }
+
+    /// Makes sure that there is a matrix over all points of steps with so many intervals, if it is not too large.
+    pub(super) fn prepare_points(&mut self, intervals: usize) {
+        if self.points.as_ref().is_none_or(|points| !points.is_for(intervals)) {
+            self.points = PointMatrix::new(&self.assembly, intervals);
+        }
     }
 
     /// Overwrites the state with the end of the step that has been found, if every number of it is finite.
@@ -121,6 +131,13 @@ impl PreparedScene {
         std::mem::swap(&mut space.force_at_start, &mut space.force_at_end);
         space.is_start_known = true;
         Ok(())
+    }
+}
+
+impl PreparedScene {
+    /// The error of a scene whose elimination takes too much.
+    pub(super) fn too_much(&self, fill: TooMuchFill) -> AssemblyError {
+        too_much(&self.assembly, fill)
     }
 }
 

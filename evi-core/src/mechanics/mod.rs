@@ -40,6 +40,8 @@ mod step_equations;
 pub(crate) use constraint_rank::CONSISTENCY;
 pub use constraint_rank::{ConstraintRank, ConstraintSet};
 pub(crate) use constraints::{Directions, NOTHING};
+#[cfg(feature = "std")]
+pub(crate) use constraints::{for_each_constraint_curvature, for_each_curved_pair};
 pub(crate) use coordinate_matrix::{CoordinateMatrix, Rows};
 pub(crate) use coupling::{AsMass, AsScene, Coupling, Full};
 pub(crate) use folded_step::FoldedStep;

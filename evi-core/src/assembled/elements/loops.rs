@@ -1,5 +1,7 @@
 //! Loops over the kernels of all elements of a family, for numbers and for lanes.
 
+use super::super::sparse::Symmetric;
+use super::LanePoint;
 use super::repeated::{Element, Repeated};
 use crate::array::Array;
 use crate::scalar::{LaneOperation, Lanes, Scalar};
@@ -127,6 +129,66 @@ impl<E: MechanicalSystem> LaneOperation for AddForce<'_, E> {
     #[inline(always)]
     fn run<const FUSED: bool>(self) {
         add_force::<E, Lanes>(self.elements, self.at, self.force);
+    }
+}
+
+/// Forces and momenta of all elements, as an operation on lanes.
+pub(super) struct AddGradient<'a, E: MechanicalSystem> {
+    pub(super) elements: &'a [Element<E>],
+    pub(super) at: LanePoint<'a>,
+    pub(super) force: &'a mut [Lanes],
+    pub(super) momentum: &'a mut [Lanes],
+}
+
+impl<E: MechanicalSystem> LaneOperation for AddGradient<'_, E> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        let LanePoint { t, q, v } = self.at;
+        for element in self.elements {
+            let (constants, q, v) = (element.constants(), element.gather(q), element.gather(v));
+            let mut local = E::lagrangian_gradient(&constants, t, &q, &v);
+            if E::STRUCTURE.forces.exist() {
+                let none = E::PerInput::<Lanes>::filled(Lanes::ZERO);
+                let added = E::forces(&constants, t, &q, &v, &none);
+                for &i in E::STRUCTURE.forces.forced {
+                    local.force[i] = local.force[i] + added[i];
+                }
+            }
+            element.scatter(&local.force, self.force);
+            element.scatter(&local.momentum, self.momentum);
+        }
+    }
+}
+
+/// Masses of all elements, as an operation on lanes.
+pub(super) struct AddMass<'a, E: MechanicalSystem> {
+    pub(super) elements: &'a [Element<E>],
+    pub(super) at: LanePoint<'a>,
+    pub(super) places: &'a [u32],
+    pub(super) matrix: &'a mut Symmetric<Lanes>,
+}
+
+impl<E: MechanicalSystem> LaneOperation for AddMass<'_, E> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        let entries = E::STRUCTURE.hessian.vv;
+        if entries.is_empty() {
+            return;
+        }
+        let LanePoint { t, q, v } = self.at;
+        for (element, places) in self.elements.iter().zip(self.places.chunks_exact(entries.len())) {
+            let constants = element.constants();
+            let (_, hessian) =
+                E::lagrangian_derivatives(&constants, t, &element.gather(q), &element.gather(v));
+            for (&place, entry) in places.iter().zip(entries) {
+                let value = entry.value(constants.as_ref(), hessian.as_ref());
+                self.matrix.add::<FUSED>(place, value, Lanes::splat(1.0));
+            }
+        }
     }
 }
 

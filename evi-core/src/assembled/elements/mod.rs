@@ -8,6 +8,7 @@ mod repeated;
 pub(super) use repeated::Repeated;
 
 use super::Point;
+use super::sparse::Symmetric;
 use crate::scalar::{InstructionSet, Lanes};
 use crate::system::Structure;
 
@@ -50,6 +51,13 @@ pub(super) trait Elements {
         entries: &mut [f64],
     );
 
+    /// Calls `visit(row, col)` for every number that the second derivatives of constraints of an element add to a matrix over coordinates.
+    fn for_each_curved_pair(&self, visit: &mut dyn FnMut(usize, usize));
+
+    /// Adds the second derivatives of `μᵀφ` to `entries`, at the `places` that follow each other as [`for_each_curved_pair`](Self::for_each_curved_pair)
+    /// does; `multipliers` are those of this family.
+    fn add_bends(&self, t: f64, q: &[f64], multipliers: &[f64], places: &[u32], entries: &mut [f64]);
+
     /// Overwrites `φ`, the nonzero slopes `∂φ/∂q` of its pattern, and `∂φ/∂t` of this family.
     fn constraint_derivatives(
         &self,
@@ -76,6 +84,24 @@ pub(super) trait Elements {
         force: &mut [Lanes],
     );
 
+    /// [`add_gradient`](Self::add_gradient) at a node per lane.
+    fn add_lane_gradient(
+        &self,
+        instructions: InstructionSet,
+        at: LanePoint<'_>,
+        force: &mut [Lanes],
+        momentum: &mut [Lanes],
+    );
+
+    /// Adds `∂²L/∂v²` at a node per lane, entry by entry of its pattern, the lower or upper triangle, at the `places` in a matrix.
+    fn add_lane_mass(
+        &self,
+        instructions: InstructionSet,
+        at: LanePoint<'_>,
+        places: &[u32],
+        matrix: &mut Symmetric<Lanes>,
+    );
+
     /// [`constraints`](Self::constraints) at a node per lane.
     fn lane_constraints(&self, instructions: InstructionSet, t: Lanes, q: &[Lanes], values: &mut [Lanes]);
 
@@ -98,6 +124,14 @@ pub(super) trait Elements {
         x: &[Lanes],
         force: &mut [Lanes],
     );
+}
+
+/// Points of a motion, a node per lane.
+#[derive(Clone, Copy)]
+pub(super) struct LanePoint<'a> {
+    pub(super) t: Lanes,
+    pub(super) q: &'a [Lanes],
+    pub(super) v: &'a [Lanes],
 }
 
 /// What second derivatives are multiplied with.

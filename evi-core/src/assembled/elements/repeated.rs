@@ -1,9 +1,11 @@
 //! A family of elements of one type.
 
 use super::super::Point;
-use super::loops::{self, AddForce, Constraints, SubtractPull};
-use super::{Elements, SecondWeights};
+use super::super::sparse::Symmetric;
+use super::loops::{self, AddForce, AddGradient, AddMass, Constraints, SubtractPull};
+use super::{Elements, LanePoint, SecondWeights};
 use crate::array::Array;
+use crate::mechanics::{for_each_constraint_curvature, for_each_curved_pair};
 use crate::scalar::{InstructionSet, Lanes, Scalar};
 use crate::system::{MechanicalSystem, Structure};
 
@@ -166,6 +168,26 @@ impl<E: MechanicalSystem> Elements for Repeated<E> {
         }
     }
 
+    fn for_each_curved_pair(&self, visit: &mut dyn FnMut(usize, usize)) {
+        for_each_curved_pair::<E>(visit);
+    }
+
+    fn add_bends(&self, t: f64, q: &[f64], multipliers: &[f64], places: &[u32], entries: &mut [f64]) {
+        if E::N_CONSTRAINTS == 0 {
+            return;
+        }
+        let mut places = places.iter();
+        for (element, multipliers) in self.elements.iter().zip(multipliers.chunks_exact(E::N_CONSTRAINTS)) {
+            let multipliers = Array::from_fn(|c| multipliers[c]);
+            let at = (t, &element.gather(q));
+            for_each_constraint_curvature::<E>(&element.constants, at, &multipliers, |_, _, value| {
+                if let Some(&place) = places.next() {
+                    entries[place as usize] += value;
+                }
+            });
+        }
+    }
+
     fn constraint_derivatives(
         &self,
         t: f64,
@@ -203,6 +225,26 @@ impl<E: MechanicalSystem> Elements for Repeated<E> {
         force: &mut [Lanes],
     ) {
         instructions.run(AddForce { elements: &self.elements, at: (t, q, v), force });
+    }
+
+    fn add_lane_gradient(
+        &self,
+        instructions: InstructionSet,
+        at: LanePoint<'_>,
+        force: &mut [Lanes],
+        momentum: &mut [Lanes],
+    ) {
+        instructions.run(AddGradient { elements: &self.elements, at, force, momentum });
+    }
+
+    fn add_lane_mass(
+        &self,
+        instructions: InstructionSet,
+        at: LanePoint<'_>,
+        places: &[u32],
+        matrix: &mut Symmetric<Lanes>,
+    ) {
+        instructions.run(AddMass { elements: &self.elements, at, places, matrix });
     }
 
     fn lane_constraints(&self, instructions: InstructionSet, t: Lanes, q: &[Lanes], values: &mut [Lanes]) {
