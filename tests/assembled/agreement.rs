@@ -41,7 +41,7 @@ fn chains_move_as_those_of_the_gallery() {
 
 /// Two scenes that do not touch each other, their coordinates in turn.
 #[derive(Clone)]
-struct Twice<E>(E);
+pub(crate) struct Twice<E>(pub(crate) E);
 
 /// Either of them.
 struct Either<E>(core::marker::PhantomData<E>);

@@ -24,7 +24,7 @@ macro_rules! windows {
             constraint(upright[i in 0..$joints]: (b[i][0] - x - l * i).powi(2) + b[i][1].powi(2) == l.powi(2)),
             constraint(coupler[i in 0..$windows]: (b[i + 1] - b[i]).norm_squared() == l.powi(2)),
         )]
-        struct $name {
+        pub(crate) struct $name {
             wagon: f64,
             m: f64,
             l: f64,
@@ -34,10 +34,10 @@ macro_rules! windows {
         }
 
         impl $name {
-            const UNEQUAL: Self = Self { wagon: 2.0, m: 0.7, l: 0.9, g: 9.81, k: 30.0, c: 0.2 };
+            pub(crate) const UNEQUAL: Self = Self { wagon: 2.0, m: 0.7, l: 0.9, g: 9.81, k: 30.0, c: 0.2 };
 
             /// All uprights at an angle, the wagon in motion.
-            fn start() -> ([f64; 9], [f64; 9]) {
+            pub(crate) fn start() -> ([f64; 9], [f64; 9]) {
                 let (angle, rate, speed) = (0.7_f64, 1.3, -0.4);
                 let l = Self::UNEQUAL.l;
                 let mut q = [0.1; 9];

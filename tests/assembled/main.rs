@@ -5,3 +5,4 @@ mod galerkin;
 mod kept;
 mod order;
 mod refusals;
+mod watched;

@@ -3,6 +3,7 @@
 use super::elements::{Elements, LanePoint, Repeated};
 use super::number::Number;
 use super::{AssembledSystem, AssemblyError, Family, FamilyVisitor};
+use crate::memory::memory;
 use crate::scalar::{InstructionSet, Lanes, Scalar};
 use crate::system::Structure;
 
@@ -334,6 +335,12 @@ pub(super) struct ConstraintsAt {
     /// `∂φ/∂t`, zero for families without time.
     pub(super) rates: Vec<f64>,
 }
+
+memory!([] ConstraintsAt, |words| Self { values, slopes, rates } => {
+    for numbers in [values, slopes, rates] {
+        words.slice(numbers);
+    }
+});
 
 impl ConstraintsAt {
     /// Storage for those of a scene.

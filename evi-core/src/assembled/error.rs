@@ -1,5 +1,6 @@
 //! Why a run of an assembled scene cannot start.
 
+use crate::integrator::ResumeError;
 use crate::linear::SingularMatrix;
 use crate::mechanics::ProjectionError;
 use crate::scheme::SchemeError;
@@ -113,6 +114,9 @@ pub enum AssemblyError {
     /// The start cannot be brought onto the constraints to the last digit.
     #[error("start: {0}")]
     Projection(#[from] ProjectionError),
+    /// The checkpoint does not belong to the simulation.
+    #[error(transparent)]
+    Checkpoint(#[from] ResumeError),
     /// Elimination fills in too much.
     #[error(
         "{unknowns} unknowns are coupled so much that elimination takes more than {most} products; the feature `sparse` of evi-core has a \

@@ -69,6 +69,7 @@
 //! ```
 
 mod assembly;
+mod checkpoint;
 mod elements;
 mod error;
 mod failure;

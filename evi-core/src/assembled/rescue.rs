@@ -2,6 +2,7 @@
 
 use super::{AssembledScheme, AssembledState, AssembledStep, AssemblyError, PreparedScene};
 use crate::integrator::{Rescued, Rescues, StepError, Symmetric, Tally, depends_on_length, n_parts};
+use crate::memory::{Memory, memory};
 
 /// The one-step map of a [`Rescued`] scheme; what [`Symmetric::rescued`] says of it holds here.
 pub struct AssembledRescued<M> {
@@ -92,3 +93,9 @@ impl<M: AssembledStep> AssembledRescued<M> {
         Err(error)
     }
 }
+
+// Maps of parts have forgotten what they knew when they are asked again, and the state before a step is overwritten by the next one.
+memory!([M: Memory] AssembledRescued<M>, |words| Self { whole, parts: _, before: _, rescues } => {
+    words.part(whole);
+    words.part(rescues);
+});

@@ -8,6 +8,7 @@ use super::saddle::Saddle;
 use super::sparse::TooMuchFill;
 use super::{AssembledState, AssembledSystem, AssemblyError};
 use crate::integrator::StepError;
+use crate::memory::memory;
 
 /// A scene, prepared for runs: its elements, the orders of its eliminations, and the storage of its steps. Stages of a composition share it.
 pub struct PreparedScene {
@@ -52,6 +53,16 @@ pub(super) struct Space {
     /// Whether what is kept of the start belongs to the state that the next step begins from.
     pub(super) is_start_known: bool,
 }
+
+// What is known of the start of the next step is found by the last one, at a time that is rounded otherwise where a composition begins; the rest is written
+// anew in every step.
+memory!([] PreparedScene, |words| Self { assembly: _, inertia: _, saddle: _, points: _, space } => {
+    let Space { at_start, force_at_start, force_at_end, is_start_known, .. } = space;
+    words.part(at_start);
+    words.slice(force_at_start);
+    words.slice(force_at_end);
+    words.flag(is_start_known);
+});
 
 impl Space {
     fn of(assembly: &Assembly) -> Self {

@@ -1,5 +1,7 @@
 //! A point of the motion of an assembled scene.
 
+use crate::memory::memory;
+
 /// Time, configuration, momentum, and the velocity that belongs to the momentum: `p = ∂L/∂v(t, q, v)`, `φ(t, q) = 0` and `G v + ∂φ/∂t = 0` to
 /// round-off; only a start or a step makes a state.
 #[derive(Clone, Debug, PartialEq)]
@@ -9,6 +11,13 @@ pub struct AssembledState {
     pub(super) v: Vec<f64>,
     pub(super) p: Vec<f64>,
 }
+
+memory!([] AssembledState, |words| Self { t, q, v, p } => {
+    words.number(t);
+    for values in [q, v, p] {
+        words.slice(values);
+    }
+});
 
 impl AssembledState {
     /// Zeros, for numbers to come.

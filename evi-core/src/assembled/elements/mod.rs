@@ -9,6 +9,7 @@ pub(super) use repeated::Repeated;
 
 use super::Point;
 use super::sparse::Symmetric;
+use crate::memory::Digest;
 use crate::scalar::{InstructionSet, Lanes};
 use crate::system::Structure;
 
@@ -31,6 +32,9 @@ pub(super) trait Elements {
 
     /// The first parameter that is not finite: its element, name and value.
     fn parameter_that_is_not_finite(&self) -> Option<(usize, &'static str, f64)>;
+
+    /// Adds to the digest what tells this family from one of other equations or places, and to the constants those of every element.
+    fn tell(&self, equations: &mut Digest, constants: &mut Vec<u64>);
 
     /// `Σ v · ∂L/∂v − L`.
     fn energy(&self, at: Point<'_>) -> f64;

@@ -6,6 +6,7 @@ use super::loops::{self, AddForce, AddGradient, AddMass, Constraints, SubtractPu
 use super::{Elements, LanePoint, SecondWeights};
 use crate::array::Array;
 use crate::mechanics::{for_each_constraint_curvature, for_each_curved_pair};
+use crate::memory::Digest;
 use crate::scalar::{InstructionSet, Lanes, Scalar};
 use crate::system::{MechanicalSystem, Structure};
 
@@ -92,6 +93,15 @@ impl<E: MechanicalSystem> Elements for Repeated<E> {
 
     fn parameter_that_is_not_finite(&self) -> Option<(usize, &'static str, f64)> {
         self.broken
+    }
+
+    fn tell(&self, equations: &mut Digest, constants: &mut Vec<u64>) {
+        E::REPORT.add_to(equations);
+        equations.add(self.elements.len() as u64);
+        for Element { constants: values, places } in &self.elements {
+            places.as_ref().iter().for_each(|place| equations.add(u64::from(*place)));
+            constants.extend(values.as_ref().iter().map(|value| value.to_bits()));
+        }
     }
 
     fn energy(&self, at: Point<'_>) -> f64 {

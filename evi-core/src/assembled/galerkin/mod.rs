@@ -13,6 +13,7 @@ use super::scene::PreparedScene;
 use super::{AssembledScheme, AssembledState, AssembledStep, AssemblyError};
 use crate::integrator::{Galerkin, Iteration, IterationFailure, StepError, Symmetric as _, Tally};
 use crate::linear::largest_magnitude;
+use crate::memory::memory;
 use crate::newton::NotConverged;
 use crate::scalar::InstructionSet;
 use crate::scheme::checked_step_size;
@@ -176,6 +177,17 @@ impl<const K: usize> AssembledGalerkin<K> {
         }
     }
 }
+
+memory!([const K: usize] AssembledGalerkin<K>, |words| Self { h, instructions: _, nodes, newton: _ } => {
+    words.fixed(*h);
+    words.fixed(K as f64);
+    // Which of them follows from the scene and the scheme.
+    match nodes {
+        Some(NodePasses::Blocks(nodes)) => words.part(nodes),
+        Some(NodePasses::Points(nodes)) => words.part(nodes),
+        None => words.fixed(-1.0),
+    }
+});
 
 impl NodePasses {
     fn knows_the_past(&self) -> bool {

@@ -18,6 +18,7 @@ use super::super::mass::ConstantMass;
 use super::super::scene::{ConstantInertia, PreparedScene};
 use super::super::sparse::Symmetric;
 use crate::mechanics::product;
+use crate::memory::memory;
 use crate::newton::{NotConverged, Progress};
 use crate::scalar::{InstructionSet, LaneOperation, Lanes, Scalar};
 use crate::scheme::{LaneTables, PAST};
@@ -108,6 +109,33 @@ impl NodeStorage {
         self.values.iter().map(|value| value.abs())
     }
 }
+
+// The rest of the storage is written anew in every step.
+memory!([] NodeStorage, |words|
+    Self {
+        tables: _,
+        gram: _,
+        start_gram: _,
+        positions: _,
+        nearest: _,
+        accelerations: _,
+        forces: _,
+        uniform_force: _,
+        velocities: _,
+        multipliers: _,
+        shares: _,
+        values: _,
+        slopes: _,
+        start_slopes: _,
+        past,
+        known,
+    } => {
+        for accelerations in past {
+            words.lane_slice(accelerations);
+        }
+        words.index(known);
+    }
+);
 
 /// Where the passes begin.
 #[derive(Clone, Copy)]

@@ -23,6 +23,7 @@ use super::super::scene::{PreparedScene, Space};
 use super::super::sparse::TooMuchFill;
 use super::passes::FirstGuess;
 use crate::mechanics::{product, reach};
+use crate::memory::memory;
 use crate::newton::{NotConverged, Progress};
 use crate::scalar::{InstructionSet, LaneOperation, Lanes, Scalar};
 use crate::scheme::{Columns, PAST, PointTables};
@@ -128,6 +129,33 @@ impl PointStorage {
         }
     }
 }
+
+// The rest of the storage is written anew in every step.
+memory!([] PointStorage, |words|
+    Self {
+        tables: _,
+        matrix: _,
+        units: _,
+        differences: _,
+        positions: _,
+        motion: _,
+        start_velocity: _,
+        momenta: _,
+        forces: _,
+        end_force: _,
+        values: _,
+        slopes: _,
+        unknowns: _,
+        past,
+        known,
+    } => {
+        for Motion { velocities, multipliers } in past {
+            words.lane_slice(velocities);
+            words.lane_slice(multipliers);
+        }
+        words.index(known);
+    }
+);
 
 /// Passes until they have converged, as an operation on lanes; returns their number. `space.at_start` holds the constraints of the start.
 pub(super) struct PointPasses<'a, const K: usize> {
