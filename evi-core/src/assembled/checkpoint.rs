@@ -4,8 +4,7 @@ use std::any::type_name;
 
 use super::scene::PreparedScene;
 use super::{
-    AssembledRun, AssembledScheme, AssembledSimulation, AssembledState, AssembledStep, AssembledSystem,
-    AssemblyError,
+    AssembledRun, AssembledScheme, AssembledSimulation, AssembledStep, AssembledSystem, AssemblyError,
 };
 use crate::integrator::{Checkpoint, Fallbacks, Fingerprint, Tally, recall, recorded, without_paths};
 use crate::memory::{Digest, Memory, Recall, Record};
@@ -71,8 +70,9 @@ impl<S: AssembledSystem + Clone, F: AssembledScheme> AssembledSimulation<S, F> {
         let (_, scheme) = recorded(&map);
         let fingerprint = fingerprint::<S, F::Step, T>(self.system(), &scene, &map, scheme);
         let [of_state, of_map, of_tally] = checkpoint.words_for(fingerprint)?;
-        let mut state = AssembledState::blank(scene.assembly.n_coordinates);
+        let mut state = scene.blank_state();
         recall("state", &mut state, of_state)?;
+        scene.set_inputs(&state.inputs);
         recall("map", &mut MapInScene { map: &mut map, scene: &mut scene }, of_map)?;
         recall("tally", &mut tally, of_tally)?;
         Ok(AssembledRun {

@@ -56,6 +56,18 @@ pub enum AssemblyError {
         /// Its value.
         value: f64,
     },
+    /// An element has other inputs than the scene.
+    #[error(
+        "elements of family {family} have {found} inputs, the scene has {expected}: an element has all of them or none"
+    )]
+    Inputs {
+        /// The family, counted from 0 in the order of declaration.
+        family: usize,
+        /// Number of inputs of the scene.
+        expected: usize,
+        /// Number of inputs of an element.
+        found: usize,
+    },
     /// Positions or velocities are not one per coordinate.
     #[error("{quantity} of the start has {found} values, the scene {expected} coordinates")]
     Length {

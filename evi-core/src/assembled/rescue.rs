@@ -29,7 +29,7 @@ impl<B: AssembledScheme + Symmetric, const K: usize> AssembledScheme for Rescued
         let part = |index| base.with_step_size(base.step_size() / n_parts(index) as f64);
         let whole = base.prepare(scene)?;
         let parts = (0..K).map(|index| part(index).prepare(scene)).collect::<Result<_, _>>()?;
-        let before = AssembledState::blank(scene.assembly.n_coordinates);
+        let before = scene.blank_state();
         Ok(AssembledRescued { whole, parts, before, rescues: Rescues::default() })
     }
 }

@@ -105,6 +105,23 @@ impl<S: AssembledSystem, M: AssembledStep, T: Tally> AssembledRun<S, M, T> {
         steps_between(self.state.t, t, self.map.h())
     }
 
+    /// Sets the inputs of the steps to come, in the order of [`INPUTS`](AssembledSystem::INPUTS); they are constant over a step, and zero at the start.
+    ///
+    /// # Panics
+    /// If these are not as many as the scene has.
+    pub fn set_inputs(&mut self, inputs: &[f64]) {
+        self.state.inputs.copy_from_slice(inputs);
+        self.scene.set_inputs(inputs);
+    }
+
+    /// The observed quantities of the state reached, in the order of [`OBSERVABLES`](AssembledSystem::OBSERVABLES).
+    pub fn observe(&self) -> Vec<f64> {
+        let AssembledState { t, q, v, inputs, .. } = &self.state;
+        let mut quantities = vec![0.0; S::OBSERVABLES.len()];
+        self.scene.assembly.observe(Point { t: *t, q, v }, inputs, &mut quantities);
+        quantities
+    }
+
     /// Energy `H = v · ∂L/∂v − L` of the state reached.
     pub fn energy(&self) -> f64 {
         self.scene.assembly.energy(Point { t: self.state.t, q: &self.state.q, v: &self.state.v })

@@ -4,7 +4,7 @@ use super::assembly::{Assembly, ConstraintsAt, Point};
 use super::elements::{SecondWeights, for_each_second_derivative};
 #[cfg(feature = "sparse")]
 use super::sparse::Pivoted;
-use super::sparse::{Elimination, General, TooMuchFill};
+use super::sparse::{Effort, Elimination, General, TooMuchFill};
 use crate::linear::SingularMatrix;
 
 /// The matrix, and where everything goes that is added to it.
@@ -85,6 +85,17 @@ impl Saddle {
         let second_derivatives = coupled.iter().map(|pairs| pairs.iter().map(place).collect()).collect();
         let slopes = slots.iter().map(|&(row, col)| [place(&(row, col)), place(&(col, row))]).collect();
         Ok(Self { matrix, second_derivatives, slopes })
+    }
+
+    /// What a factorisation takes.
+    pub(super) fn effort(&self) -> Effort {
+        match &self.matrix {
+            SaddleMatrix::Ordered(elimination, _) => elimination.effort(),
+            #[cfg(feature = "sparse")]
+            SaddleMatrix::Pivoted(matrix) => {
+                Effort { unknowns: matrix.n_unknowns(), below: 0, products: 0, is_pivoted: true }
+            }
+        }
     }
 
     /// Overwrites the matrix with zero.

@@ -20,6 +20,7 @@ pub struct PreparedScene {
     /// All points of a Galerkin step together, where there are such steps and the matrix is not too large.
     pub(super) points: Option<PointMatrix>,
     pub(super) space: Space,
+    n_inputs: usize,
 }
 
 /// A mass matrix that is constant and of small blocks: with it multipliers are found alone.
@@ -56,7 +57,7 @@ pub(super) struct Space {
 
 // What is known of the start of the next step is found by the last one, at a time that is rounded otherwise where a composition begins; the rest is written
 // anew in every step.
-memory!([] PreparedScene, |words| Self { assembly: _, inertia: _, saddle: _, points: _, space } => {
+memory!([] PreparedScene, |words| Self { assembly: _, inertia: _, saddle: _, points: _, space, n_inputs: _ } => {
     let Space { at_start, force_at_start, force_at_end, is_start_known, .. } = space;
     words.part(at_start);
     words.slice(force_at_start);
@@ -104,7 +105,25 @@ impl PreparedScene {
             Some(_) => None,
             None => Some(Saddle::new(&assembly).map_err(|fill| too_much(&assembly, fill))?),
         };
-        Ok(Self { space: Space::of(&assembly), assembly, inertia, saddle, points: None })
+        Ok(Self {
+            space: Space::of(&assembly),
+            assembly,
+            inertia,
+            saddle,
+            points: None,
+            n_inputs: S::INPUTS.len(),
+        })
+    }
+
+    /// A state of zeros, for numbers to come.
+    pub(super) fn blank_state(&self) -> AssembledState {
+        AssembledState::blank(self.assembly.n_coordinates, self.n_inputs)
+    }
+
+    /// Sets what forces take from the caller: what is known of the start of a step is known no more.
+    pub(super) fn set_inputs(&mut self, inputs: &[f64]) {
+        self.assembly.set_inputs(inputs);
+        self.space.is_start_known = false;
     }
 
     /// Makes sure that there is a saddle-point matrix.

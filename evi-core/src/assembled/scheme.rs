@@ -125,7 +125,7 @@ impl<B: AssembledScheme + Symmetric, const N: usize> AssembledScheme for Compose
         for (stage, start) in self.stages() {
             stages.push((start * h, stage.prepare(scene)?));
         }
-        Ok(AssembledComposed { stages, h, before: AssembledState::blank(scene.assembly.n_coordinates) })
+        Ok(AssembledComposed { stages, h, before: scene.blank_state() })
     }
 }
 

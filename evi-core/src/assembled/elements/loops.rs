@@ -12,9 +12,11 @@ use crate::system::{Entry, MechanicalSystem};
 pub(super) fn add_force<E: MechanicalSystem, T: Scalar>(
     elements: &[Element<E>],
     (t, q, v): (T, &[T], Option<&[T]>),
+    inputs: &E::PerInput<f64>,
     force: &mut [T],
 ) {
     let zero = T::from_f64(0.0);
+    let inputs: E::PerInput<T> = Array::from_fn(|i| T::from_f64(inputs[i]));
     for element in elements {
         let constants = element.constants();
         let q = element.gather(q);
@@ -24,7 +26,7 @@ pub(super) fn add_force<E: MechanicalSystem, T: Scalar>(
         };
         let mut local = E::lagrangian_gradient(&constants, t, &q, &v).force;
         if E::STRUCTURE.forces.exist() {
-            let added = E::forces(&constants, t, &q, &v, &E::PerInput::<T>::filled(zero));
+            let added = E::forces(&constants, t, &q, &v, &inputs);
             for &i in E::STRUCTURE.forces.forced {
                 local[i] = local[i] + added[i];
             }
@@ -120,6 +122,7 @@ impl<E: MechanicalSystem> LaneOperation for SubtractPull<'_, E> {
 pub(super) struct AddForce<'a, E: MechanicalSystem> {
     pub(super) elements: &'a [Element<E>],
     pub(super) at: (Lanes, &'a [Lanes], Option<&'a [Lanes]>),
+    pub(super) inputs: &'a E::PerInput<f64>,
     pub(super) force: &'a mut [Lanes],
 }
 
@@ -128,7 +131,7 @@ impl<E: MechanicalSystem> LaneOperation for AddForce<'_, E> {
 
     #[inline(always)]
     fn run<const FUSED: bool>(self) {
-        add_force::<E, Lanes>(self.elements, self.at, self.force);
+        add_force::<E, Lanes>(self.elements, self.at, self.inputs, self.force);
     }
 }
 
@@ -136,6 +139,7 @@ impl<E: MechanicalSystem> LaneOperation for AddForce<'_, E> {
 pub(super) struct AddGradient<'a, E: MechanicalSystem> {
     pub(super) elements: &'a [Element<E>],
     pub(super) at: LanePoint<'a>,
+    pub(super) inputs: &'a E::PerInput<f64>,
     pub(super) force: &'a mut [Lanes],
     pub(super) momentum: &'a mut [Lanes],
 }
@@ -146,12 +150,12 @@ impl<E: MechanicalSystem> LaneOperation for AddGradient<'_, E> {
     #[inline(always)]
     fn run<const FUSED: bool>(self) {
         let LanePoint { t, q, v } = self.at;
+        let inputs: E::PerInput<Lanes> = Array::from_fn(|i| Lanes::splat(self.inputs[i]));
         for element in self.elements {
             let (constants, q, v) = (element.constants(), element.gather(q), element.gather(v));
             let mut local = E::lagrangian_gradient(&constants, t, &q, &v);
             if E::STRUCTURE.forces.exist() {
-                let none = E::PerInput::<Lanes>::filled(Lanes::ZERO);
-                let added = E::forces(&constants, t, &q, &v, &none);
+                let added = E::forces(&constants, t, &q, &v, &inputs);
                 for &i in E::STRUCTURE.forces.forced {
                     local.force[i] = local.force[i] + added[i];
                 }

@@ -3,20 +3,31 @@
 //! What is known of a scene's elements at compile time ends here: above, a family is a [`Elements`], and a run is the same code for every scene.
 
 mod loops;
+mod observed;
 mod repeated;
 
+pub(super) use observed::{ObservedElements, Term};
 pub(super) use repeated::Repeated;
 
 use super::Point;
 use super::sparse::Symmetric;
 use crate::memory::Digest;
 use crate::scalar::{InstructionSet, Lanes};
-use crate::system::Structure;
+use crate::system::{Structure, SystemReport};
 
 /// A family whose kernels add to vectors of the whole scene.
 pub(super) trait Elements {
     /// What is known of one element.
     fn structure(&self) -> &'static Structure;
+
+    /// The element as a scene of its own.
+    fn report(&self) -> SystemReport;
+
+    /// Sets what forces take from the caller.
+    fn set_inputs(&mut self, inputs: &[f64]);
+
+    /// Number of inputs of an element.
+    fn n_inputs(&self) -> usize;
 
     /// Number of elements.
     fn count(&self) -> usize;

@@ -7,7 +7,7 @@
 use super::super::assembly::{Assembly, Point, subtract_pull};
 use super::super::elements::{SecondWeights, for_each_second_derivative};
 use super::super::scene::{PreparedScene, Space};
-use super::super::sparse::{Blocked, Elimination, General};
+use super::super::sparse::{Blocked, Effort, Elimination, General};
 use super::super::{AssembledState, failure};
 use crate::integrator::{IterationFailure, StepError, Tally};
 use crate::linear::{SingularMatrix, largest_magnitude};
@@ -73,6 +73,11 @@ impl PointMatrix {
             residual: vec![0.0; n_unknowns * intervals],
             elimination,
         })
+    }
+
+    /// What a factorisation takes, in blocks.
+    pub(in super::super) fn effort(&self) -> Effort {
+        self.elimination.effort()
     }
 
     /// Whether it is that of steps with so many intervals between nodes.

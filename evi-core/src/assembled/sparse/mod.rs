@@ -13,6 +13,7 @@ mod pivoted;
 mod symmetric;
 
 pub(super) use blocked::Blocked;
+pub use elimination::Effort;
 pub(super) use elimination::{Elimination, TooMuchFill};
 pub(super) use general::General;
 #[cfg(feature = "sparse")]
