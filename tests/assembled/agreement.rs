@@ -72,7 +72,8 @@ impl<E: MechanicalSystem + Clone + 'static> AssembledSystem for Twice<E> {
     }
 }
 
-/// Either copy ends where the scene itself does, to round-off of the largest number: 1.7e-15 of it measured.
+/// Either copy ends where the scene itself does, to round-off of the largest number: 4.0e-15 of it measured, of velocities that Galerkin steps of 0.2 ms find
+/// from positions.
 #[track_caller]
 fn check_twice<E, F, const N: usize>(scene: E, start: Start<N>, scheme: F, end: f64)
 where
@@ -90,7 +91,7 @@ where
     {
         let difference = largest_difference(&doubled(*one), two) / largest_difference(one, &[0.0; N]);
         println!("{}: {difference:e}", core::panic::Location::caller());
-        assert!(difference < 3e-15, "{difference:e}");
+        assert!(difference < 5e-15, "{difference:e}");
         assert!(largest_difference(one, &start) > 1e-3, "it moves");
     }
 }

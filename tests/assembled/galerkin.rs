@@ -164,3 +164,22 @@ fn steps_that_passes_do_not_solve_are_left_to_newton() {
     // 7.8e-16 measured, of coordinates below 1.
     assert!(beside < 2e-15 && error < 1e-16, "{beside:e} {error:e}");
 }
+
+#[test]
+fn windows_swing_through_the_position_in_which_they_lie_flat() {
+    // There all constraints are dependent: on the way through, passes fail.
+    let (q, v) = Looped::start();
+    let windows = Looped { c: 0.0, ..Looped::UNEQUAL };
+    let run = AssembledSimulation::new(windows, Galerkin::<8>::new(0.02)).start(q, v).expect("a start");
+    let mut run = run.with_tally(Statistics::default());
+    let (energy, mut lowest, mut error) = (run.energy(), q[2], 0.0_f64);
+    while run.state().t() < 1.5 {
+        let state = run.advance().expect("a step");
+        lowest = lowest.min(state.q()[2]);
+        error = error.max((run.energy() - energy).abs());
+    }
+    println!("{:?}, H {error:e}, φ {:e}, down to {lowest}", run.tally(), run.constraint_error());
+    assert!(run.tally().newton_steps > 0 && lowest < -0.5);
+    // 6.3e-11 J measured, of some 20 J.
+    assert!(error < 1e-10 && run.constraint_error() < 1e-15, "{error:e} {:e}", run.constraint_error());
+}
