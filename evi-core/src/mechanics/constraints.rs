@@ -66,23 +66,44 @@ impl<S: MechanicalSystem> Mechanics<S> {
         jacobian: &S::PerJacobianEntry<f64>,
         directions: &Directions<S>,
     ) -> Gram<S> {
-        // Terms of even and of odd columns: two short chains of additions instead of a long one.
+        /// Few constraints wait for their matrix; to add up matrices of many, most of whose entries are zero, takes longer than the wait.
+        const MOST_IN_HALVES: usize = 4;
         let nothing = || -> Gram<S> { Array::from_fn(|_| Array::from_fn(|_| NOTHING)) };
+        if S::N_CONSTRAINTS > MOST_IN_HALVES {
+            let mut gram = nothing();
+            self.for_each_gram_term::<C>(jacobian, directions, |row, other, _, term| {
+                gram[row][other] += term
+            });
+            return gram;
+        }
+        // Terms of even and of odd columns: two short chains of additions instead of a long one.
         let (mut even, mut odd) = (nothing(), nothing());
+        self.for_each_gram_term::<C>(jacobian, directions, |row, other, col, term| {
+            let gram = if col % 2 == 0 { &mut even } else { &mut odd };
+            gram[row][other] += term;
+        });
+        Array::from_fn(|row| Array::from_fn(|col| even[row][col] + odd[row][col]))
+    }
+
+    /// Calls `add(row, other, col, G[row][col] D[col][other])` for every term of `G D`.
+    #[inline(always)]
+    fn for_each_gram_term<C: Coupling<S>>(
+        &self,
+        jacobian: &S::PerJacobianEntry<f64>,
+        directions: &Directions<S>,
+        mut add: impl FnMut(usize, usize, usize, f64),
+    ) {
         if C::IS_DIAGONAL {
             S::for_each_slope_pair(&self.constants, jacobian, |row, other, col, slope| {
-                let gram = if col % 2 == 0 { &mut even } else { &mut odd };
-                gram[row][other] += slope * directions[other][col];
+                add(row, other, col, slope * directions[other][col]);
             });
         } else {
             S::for_each_slope(&self.constants, jacobian, |row, col, slope| {
-                let gram = if col % 2 == 0 { &mut even } else { &mut odd };
                 for other in 0..S::N_CONSTRAINTS {
-                    gram[row][other] += slope * directions[other][col];
+                    add(row, other, col, slope * directions[other][col]);
                 }
             });
         }
-        Array::from_fn(|row| Array::from_fn(|col| even[row][col] + odd[row][col]))
     }
 
     /// `Σᵢ |G_ci| rᵢ` for a reach `rᵢ ≥ 0` of every coordinate.
