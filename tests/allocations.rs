@@ -17,6 +17,7 @@ use evi_core::baseline::{GeneralizedAlpha, ImplicitMidpoint, Rattle, Rk4, Shake}
 use evi_core::generic::{GenericEvi, GenericGalerkin, GenericScheme, GenericSystem};
 use evi_core::integrator::{Diagnostics, OfRank};
 use evi_core::prelude::*;
+use evi_core::sensitivity::{Differentiable, Differentiate, Direction};
 use evi_core::watch::{EnergyDrift, Limits};
 use evi_examples::{
     DoublePendulum, DrivenPendulum, FermiPastaUlam, HarmonicOscillator, Pendulum, SphericalPendulum, Start,
@@ -99,6 +100,36 @@ fn mild() -> Start<4> {
 /// One frequency per body of the double pendulum.
 const PER_BODY: [Frequency; 4] =
     [Frequency::ZERO, Frequency::ZERO, Frequency::Trigonometric(2.4), Frequency::Trigonometric(2.4)];
+
+/// Moves a vector along 200 steps and expects that none allocates.
+#[track_caller]
+fn check_tangents<S, F, const N: usize>(system: S, scheme: F, start: Start<N>)
+where
+    S: MechanicalSystem<PerCoordinate<f64> = [f64; N]>,
+    F: Scheme<S, Step: Differentiable<S>>,
+{
+    let mut along = [0.0; N];
+    along[N - 1] = 1.0;
+    let direction = Direction::of_start([0.0; N], along);
+    let simulation = Simulation::new(system, scheme);
+    let mut run = simulation.start_with_tangents(start.q, start.v, &[direction]).expect("a start");
+    let before = *run.tangents()[0].q();
+    let allocations = allocations(|| {
+        for _ in 0..200 {
+            run.advance().expect("the step exists");
+        }
+    });
+    assert_eq!(allocations, 0);
+    assert_ne!(*run.tangents()[0].q(), before, "the vector stood still");
+}
+
+#[test]
+fn no_step_of_a_tangent_map_allocates() {
+    check_tangents(DOUBLE, Evi::midpoint(0.01), mild());
+    check_tangents(DOUBLE, Evi::trapezoid(0.01).composed(Composition::suzuki_4()), mild());
+    check_tangents(DOUBLE, Galerkin::<3>::new(0.02), mild());
+    check_tangents(PENDULUM, Gauss::<3>::new(0.02), SWING);
+}
 
 #[test]
 fn the_counter_counts() {

@@ -1,12 +1,12 @@
 //! Gauss integrators: their orders, their passes against Newton's iteration, and what they keep.
 
 use evi_core::baseline::Rk4;
-use evi_core::integrator::{Iteration, Statistics};
+use evi_core::integrator::Statistics;
 use evi_core::prelude::*;
 use evi_examples::{FermiPastaUlam, Start, StiffSpringPendulum};
+use evi_tests::agreement::roundings_between;
 use evi_tests::conservation::there_and_back;
 use evi_tests::convergence::check_orders;
-use evi_tests::largest_difference;
 use evi_tests::motions::{damped_pendulum, long_double_pendulum_in_angles, modulated_pendulum};
 use evi_tests::scenes::{
     DampedOscillator, DoublePendulumInAngles, KapitzaPendulum, KapitzaPendulumInAngle,
@@ -42,33 +42,9 @@ mod agreement {
     where
         S: MechanicalSystem<PerCoordinate<f64> = [f64; N]> + Clone,
     {
-        const STEPS: usize = 40;
         let scheme = Gauss::<K>::new(h);
-        let run = Simulation::new(system.clone(), scheme).start(start.q, start.v).expect("a start");
-        assert!(matches!(run.map().iteration(), Iteration::Passes(_)));
-        let mut run = run.with_tally(Statistics::default());
-        let mut roundings = 0.0_f64;
-        for _ in 0..STEPS {
-            let before = run.state().clone();
-            let newton = Simulation::new(system.clone(), scheme.by_newton());
-            let mut newton =
-                newton.start_at(before.t(), *before.q(), *before.v()).expect("a state is a start");
-            newton.set_inputs(before.inputs().clone());
-            assert!(matches!(newton.map().iteration(), Iteration::Newton));
-            let after = run.advance().expect("a step of passes");
-            let exact = newton.advance().expect("a step of Newton");
-            for (ours, theirs) in [(after.q(), exact.q()), (after.v(), exact.v())] {
-                let size = theirs.iter().fold(1.0_f64, |size, x| size.max(x.abs()));
-                roundings = roundings.max(largest_difference(ours, theirs) / (size * f64::EPSILON));
-            }
-        }
-        let tally = run.tally();
-        println!(
-            "{}: K = {K}: {roundings:.1} roundings, {:.2} passes",
-            core::panic::Location::caller(),
-            tally.corrections as f64 / STEPS as f64
-        );
-        assert_eq!((tally.restarts, tally.newton_steps), (0, 0), "vacuous: not by passes");
+        let both = [scheme, scheme.by_newton()];
+        let roundings = roundings_between(&system, start, h, both, |step| step.iteration());
         // Two iterations: 2.3 measured.
         assert!(roundings <= 4.0, "{roundings:.0} roundings");
     }

@@ -7,8 +7,8 @@ use evi_examples::{
     AndrewsSqueezer, CarAxis, DoublePendulum, DrivenPendulum, FermiPastaUlam, Pendulum, SliderCrank,
     SphericalPendulum, Start, StiffSpringPendulum,
 };
+use evi_tests::agreement::roundings_between;
 use evi_tests::conservation::{largest_residuals, there_and_back};
-use evi_tests::largest_difference;
 use evi_tests::scenes::{
     ChargedSphericalPendulum, DampedOscillator, DoublePendulumInAngles, KapitzaPendulum,
     KapitzaPendulumInAngle, MotorisedDoublePendulum, PushedDumbbell, RelativisticBead,
@@ -67,44 +67,14 @@ fn swing() -> (DoublePendulum, Start<4>) {
 mod agreement {
     use super::*;
 
-    /// Takes `STEPS` steps, each of them by passes and by Newton's iteration from the same state; their largest difference in units of
-    /// round-off.
     #[track_caller]
     fn check<S, const K: usize, const N: usize>(system: S, start: Start<N>, h: f64)
     where
         S: MechanicalSystem<PerCoordinate<f64> = [f64; N]> + Clone,
     {
-        const STEPS: usize = 40;
         let scheme = Galerkin::<K>::new(h);
-        let run =
-            Simulation::new(system.clone(), scheme).start_projected(0.0, start.q, start.v).expect("a start");
-        assert!(matches!(run.map().iteration(), Iteration::Passes(_)), "vacuous: {}", run.map().iteration());
-        let mut run = run.with_tally(Statistics::default());
-        let mut roundings = 0.0_f64;
-        for _ in 0..STEPS {
-            let before = run.state().clone();
-            let newton = Simulation::new(system.clone(), scheme.by_newton());
-            let mut newton =
-                newton.start_projected(before.t(), *before.q(), *before.v()).expect("a state is a start");
-            newton.set_inputs(before.inputs().clone());
-            assert!(matches!(newton.map().iteration(), Iteration::Newton));
-            let after = run.advance().expect("a step of passes");
-            let exact = newton.advance().expect("a step of Newton");
-            let largest = |x: &[f64]| x.iter().fold(1.0_f64, |largest, x| largest.max(x.abs()));
-            let reach = largest(exact.q());
-            // Multipliers are what keeps points on the constraints, to round-off of the points: velocities feel it by the h-th part.
-            let speed = largest(exact.v()).max(0.1 * reach / h);
-            for (ours, theirs, size) in [(after.q(), exact.q(), reach), (after.v(), exact.v(), speed)] {
-                roundings = roundings.max(largest_difference(ours, theirs) / (size * f64::EPSILON));
-            }
-        }
-        let tally = run.tally();
-        println!(
-            "{}: K = {K}: {roundings:.1} roundings, {:.2} passes, {tally:?}",
-            core::panic::Location::caller(),
-            tally.corrections as f64 / STEPS as f64
-        );
-        assert_eq!((tally.restarts, tally.newton_steps), (0, 0), "vacuous: not by passes");
+        let both = [scheme, scheme.by_newton()];
+        let roundings = roundings_between(&system, start, h, both, |step| step.iteration());
         // Two iterations: 5 measured.
         assert!(roundings <= 8.0, "{roundings:.0} roundings");
     }

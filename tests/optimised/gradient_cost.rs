@@ -39,18 +39,29 @@ struct Counted {
     name: &'static str,
     run: fn(u64) -> f64,
     gradient: fn(u64) -> f64,
+    /// Runs that the gradient costs at most.
+    most: f64,
 }
 
-const COUNTED: [Counted; 2] = [
+const COUNTED: [Counted; 3] = [
     Counted {
         name: "double pendulum with constraints, by five parameters",
         run: |steps| counted_run(&constrained(), steps),
         gradient: |steps| counted_gradient(&constrained(), steps),
+        most: 5.0,
     },
     Counted {
         name: "motorised double pendulum, by nine parameters",
         run: |steps| counted_run(&motorised(), steps),
         gradient: |steps| counted_gradient(&motorised(), steps),
+        most: 5.0,
+    },
+    // Beyond five: the step is solved by passes and factors nothing, its derivative factors the matrix of all points once.
+    Counted {
+        name: "double pendulum with constraints, Galerkin steps, by five parameters",
+        run: |steps| counted_run(&by_passes(), steps),
+        gradient: |steps| counted_gradient(&by_passes(), steps),
+        most: 14.0,
     },
 ];
 
@@ -60,6 +71,11 @@ fn constrained() -> Prepared<evi_examples::DoublePendulum, Evi<1>, 4> {
     let angles = DoublePendulumInAngles::UNEQUAL;
     let start = angles.cartesian([0.9, -0.4], [1.1, 2.3]);
     (Simulation::new(angles.constrained(), Evi::midpoint(0.05)), start.q, start.v)
+}
+
+fn by_passes() -> Prepared<evi_examples::DoublePendulum, Galerkin<3>, 4> {
+    let (_, q, v) = constrained();
+    (Simulation::new(DoublePendulumInAngles::UNEQUAL.constrained(), Galerkin::<3>::new(0.05)), q, v)
 }
 
 fn motorised() -> Prepared<MotorisedDoublePendulum, Evi<3>, 2> {
@@ -117,7 +133,7 @@ fn instructions(case: usize, with_gradient: bool) -> Option<u64> {
 }
 
 #[test]
-fn a_gradient_costs_at_most_five_runs() {
+fn a_gradient_costs_a_few_runs() {
     for (case, counted) in COUNTED.iter().enumerate() {
         let (Some(run), Some(gradient)) = (instructions(case, false), instructions(case, true)) else {
             println!("skipped: valgrind does not run here");
@@ -126,6 +142,6 @@ fn a_gradient_costs_at_most_five_runs() {
         assert!(run > 100 * STEPS, "vacuous: {run} instructions are counted");
         let ratio = gradient as f64 / run as f64;
         println!("{}: {ratio:.2} runs", counted.name);
-        assert!(ratio <= 5.0, "{}: a gradient costs {ratio:.2} runs", counted.name);
+        assert!(ratio <= counted.most, "{}: a gradient costs {ratio:.2} runs", counted.name);
     }
 }

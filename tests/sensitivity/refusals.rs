@@ -35,6 +35,34 @@ fn parameters_that_the_tables_of_a_scheme_follow() {
     assert!(simulation.start_with_tangents([1.0], [0.0], &[direction]).is_ok());
 }
 
+/// A bead on a wire that is no parabola: its constraint has a third derivative.
+#[derive(Clone, Copy, MechanicalSystem)]
+#[evi(
+    coordinates(x, y),
+    kinetic = 0.5 * m * (der(x).powi(2) + der(y).powi(2)),
+    potential = m * g * y,
+    constraint(wire: y == 0.5 * x.powi(2) + 0.1 * x.powi(4)),
+)]
+struct BeadOnWire {
+    m: f64,
+    g: f64,
+}
+
+/// On the ends alone, the same linearisation has one.
+#[test]
+fn a_linearisation_between_the_ends_of_a_constraint_that_is_not_quadratic() {
+    let bead = BeadOnWire { m: 0.7, g: 9.81 };
+    let start = [0.3, 0.5 * 0.3_f64.powi(2) + 0.1 * 0.3_f64.powi(4)];
+    let direction = || [Direction::of_start([0.0; 2], [1.0, 0.0])];
+    let between = Simulation::new(bead, Evi::midpoint(0.01).linearised_at([0.0; 2]));
+    let mut run = between.start_with_tangents(start, [0.0; 2], &direction()).expect("a start");
+    let error = run.advance().expect_err("no derivative").to_string();
+    assert!(error.contains("constraints that are quadratic, or the trapezoidal rule"), "{error}");
+    let at_ends = Simulation::new(bead, Evi::trapezoid(0.01).linearised_at([0.0; 2]));
+    let mut run = at_ends.start_with_tangents(start, [0.0; 2], &direction()).expect("a start");
+    run.advance().expect("a derivative");
+}
+
 #[test]
 fn inputs_that_are_not_one_list_per_step() {
     let simulation = Simulation::new(DampedOscillator::STANDARD, Evi::midpoint(0.1));

@@ -1,6 +1,7 @@
 //! What several tests need: orders of convergence, an integrator that shares nothing with evi-core, certified
 //! reference numbers, scenes beside the gallery, and random numbers that are the same on every machine.
 
+pub mod agreement;
 pub mod conservation;
 pub mod convergence;
 pub mod galerkin;

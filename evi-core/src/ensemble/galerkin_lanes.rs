@@ -1,6 +1,6 @@
 //! Galerkin steps of eight members by passes over their nodes, a member per lane.
 //!
-//! The iteration is that of `mechanics/lane_step.rs`, whose lanes are the nodes of one member: a pass is the same number of vector operations per member
+//! The iteration is that of `mechanics/lane_step`, whose lanes are the nodes of one member: a pass is the same number of vector operations per member
 //! here as there, but for what a single step does outside of its passes (prediction, landing, horizontal sums) and waits for. Here all of it is done for
 //! eight members at a time, and nodes do not wait for each other. What is lost is that a group takes the passes of its slowest member.
 
@@ -356,7 +356,7 @@ impl<S: MechanicalSystem, const K: usize> GalerkinLanes<S, K> {
         self.multipliers[j] = multipliers;
     }
 
-    /// One over what steps from `state` are found to the round-off of, in the metric of the masses: as in `mechanics/lane_step.rs`.
+    /// One over what steps from `state` are found to the round-off of, in the metric of the masses: as in `mechanics/lane_step`.
     #[inline(always)]
     fn per_reach(&self, state: &LaneState<S>) -> Lanes {
         /// A step of an eighth of the configuration is not short.

@@ -13,7 +13,7 @@ use super::lane_step::{product, reach};
 use super::{Mechanics, State};
 use crate::array::Array;
 use crate::linear::LaneMass;
-use crate::newton::{NotConverged, Progress};
+use crate::newton::{LinearProgress, NotConverged};
 use crate::scalar::{LaneOperation, Lanes, Scalar};
 use crate::scheme::{GaussTables, PAST};
 use crate::system::MechanicalSystem;
@@ -95,20 +95,27 @@ impl<S: MechanicalSystem, const K: usize> GaussPasses<S, K> {
         let h = self.tables.weights.sum().abs();
         let mut velocities = self.first::<FUSED>(start, guess);
         let mut q = self.positions::<FUSED>(start, &velocities);
-        let mut progress = Progress::default();
+        let mut progress = LinearProgress::default();
         let mut passes = 0;
         loop {
             let (mut gradient, hessian) = S::lagrangian_derivatives(&self.constants, times, &q, &velocities);
             self.add_forces(start, times, &q, &velocities, &mut gradient.force);
             let mut inertia: Nodes<S> = Array::filled(Lanes::ZERO);
             self.mass.clear();
-            for entry in S::STRUCTURE.hessian.vv {
-                let value = entry.value(self.constants.as_ref(), hessian.as_ref());
-                self.mass.set(entry.row, entry.col, value);
-                if entry.row == entry.col {
-                    inertia[entry.row] = value;
-                }
-            }
+            let mass = &mut self.mass;
+            S::for_each_vv(
+                &self.constants,
+                &hessian,
+                #[inline(always)]
+                |row, col, value| {
+                    if row >= col {
+                        mass.set(row, col, value);
+                    }
+                    if row == col {
+                        inertia[row] = value;
+                    }
+                },
+            );
             self.mass.factor::<FUSED>();
             let mut correction: Nodes<S> = Array::filled(Lanes::ZERO);
             for i in 0..n {
@@ -129,7 +136,8 @@ impl<S: MechanicalSystem, const K: usize> GaussPasses<S, K> {
             passes += 1;
             let moved = h * Scalar::sqrt(moves.largest());
             let reach = reach(Scalar::sqrt(here.largest()), h * Scalar::sqrt(speed.largest()));
-            if progress.has_converged_linearly(if moved == 0.0 { 0.0 } else { moved / reach })? {
+            let length = if moved == 0.0 { 0.0 } else { moved / reach };
+            if progress.has_converged(length * length)? {
                 break;
             }
         }

@@ -165,7 +165,7 @@ impl<S: MechanicalSystem> ConstantLegendre<S> {
 
     /// `p − a`, coordinate `i`.
     #[inline(always)]
-    fn moving_momentum(&self, p: &S::PerCoordinate<f64>, i: usize) -> f64 {
+    pub(crate) fn moving_momentum(&self, p: &S::PerCoordinate<f64>, i: usize) -> f64 {
         if S::STRUCTURE.momentum_vanishes_at_rest { p[i] } else { p[i] - self.momentum_at_rest[i] }
     }
 }

@@ -23,7 +23,7 @@ use super::point_guess::{FirstPoints, NodeMotion, NodeMultipliers, Nodes, PointG
 use super::{ForcePoint, Mechanics, State};
 use crate::array::Array;
 use crate::linear::{LaneGram, LaneMass};
-use crate::newton::{NotConverged, Progress};
+use crate::newton::{LinearProgress, NotConverged};
 use crate::scalar::{LaneOperation, Lanes, Scalar};
 use crate::scheme::PointTables;
 use crate::system::{LagrangianGradient, MassShape, MechanicalSystem};
@@ -114,7 +114,7 @@ impl<S: MechanicalSystem, const K: usize> PointPasses<S, K> {
         let mut moves: Nodes<S> = nothing();
         let mut jacobian: S::PerJacobianEntry<Lanes> = nothing();
         let mut per_reach = 0.0;
-        let mut progress = Progress::default();
+        let mut progress = LinearProgress::default();
         let (mut is_stale, mut is_last) = (true, false);
         let mut passes = 0;
         loop {
@@ -183,10 +183,10 @@ impl<S: MechanicalSystem, const K: usize> PointPasses<S, K> {
                 differences[i] = differences[i] + moves[i];
             }
             let square = (Scalar::abs(squares) + Scalar::abs(work)).largest();
-            let length = Scalar::sqrt(square) * per_reach;
-            is_stale = length > STALE;
+            let square = square * per_reach * per_reach;
+            is_stale = square > STALE * STALE;
             // Then once more, for the forces where the points have come to.
-            is_last = progress.has_converged_linearly(length)?;
+            is_last = progress.has_converged(square)?;
         }
     }
 
@@ -223,35 +223,51 @@ impl<S: MechanicalSystem, const K: usize> PointPasses<S, K> {
         let mut inertia: Nodes<S> = nothing();
         let (_, hessian) = S::lagrangian_derivatives(&self.constants, times, q, v);
         self.mass.clear();
-        for entry in S::STRUCTURE.hessian.vv {
-            let value = entry.value(self.constants.as_ref(), hessian.as_ref());
-            self.mass.set(entry.row, entry.col, value);
-            if entry.row == entry.col {
-                inertia[entry.row] = Scalar::abs(value);
-            }
-        }
+        let mass = &mut self.mass;
+        S::for_each_vv(
+            &self.constants,
+            &hessian,
+            #[inline(always)]
+            |row, col, value| {
+                if row >= col {
+                    mass.set(row, col, value);
+                }
+                if row == col {
+                    inertia[row] = Scalar::abs(value);
+                }
+            },
+        );
         self.mass.factor::<FUSED>();
         inertia
     }
 
     #[inline(always)]
     fn factor_gram<const FUSED: bool>(&mut self, jacobian: &S::PerJacobianEntry<Lanes>) {
-        let entries = S::STRUCTURE.jacobian.q;
-        let slope = |entry: &crate::system::Entry| entry.value(self.constants.as_ref(), jacobian.as_ref());
         self.gram.clear();
-        for col in 0..S::N_CONSTRAINTS {
+        for other in 0..S::N_CONSTRAINTS {
             let mut direction: Nodes<S> = nothing();
-            for entry in entries {
-                if entry.row == col {
-                    direction[entry.col] = slope(entry);
-                }
-            }
+            S::for_each_slope(
+                &self.constants,
+                jacobian,
+                #[inline(always)]
+                |row, col, slope| {
+                    if row == other {
+                        direction[col] = slope;
+                    }
+                },
+            );
             self.mass.solve::<FUSED>(&mut direction);
-            for entry in entries {
-                if entry.row >= col {
-                    self.gram.add_product::<FUSED>(entry.row, col, slope(entry), direction[entry.col]);
-                }
-            }
+            let gram = &mut self.gram;
+            S::for_each_slope(
+                &self.constants,
+                jacobian,
+                #[inline(always)]
+                |row, col, slope| {
+                    if row >= other {
+                        gram.add_product::<FUSED>(row, other, slope, direction[col]);
+                    }
+                },
+            );
         }
         self.gram.factor::<FUSED>();
     }
@@ -264,10 +280,12 @@ impl<S: MechanicalSystem, const K: usize> PointPasses<S, K> {
         x: &NodeMultipliers<S>,
     ) -> Nodes<S> {
         let mut sum: Nodes<S> = nothing();
-        for entry in S::STRUCTURE.jacobian.q {
-            let slope = entry.value(self.constants.as_ref(), jacobian.as_ref());
-            sum[entry.col] = slope.times_plus::<FUSED>(x[entry.row], sum[entry.col]);
-        }
+        S::for_each_slope(
+            &self.constants,
+            jacobian,
+            #[inline(always)]
+            |row, col, slope| sum[col] = slope.times_plus::<FUSED>(x[row], sum[col]),
+        );
         sum
     }
 
@@ -304,10 +322,12 @@ impl<S: MechanicalSystem, const K: usize> PointPasses<S, K> {
             for i in 0..n {
                 force[i] = force[i] - held[i];
             }
-            for entry in S::STRUCTURE.jacobian.q {
-                let slope = entry.value(mechanics.constants.as_ref(), start_jacobian.as_ref());
-                at_start.force[entry.col] -= slope * multipliers[entry.row].to_array()[K - 1];
-            }
+            S::for_each_slope(
+                &mechanics.constants,
+                start_jacobian,
+                #[inline(always)]
+                |row, col, slope| at_start.force[col] -= slope * multipliers[row].to_array()[K - 1],
+            );
         }
         for i in 0..n {
             force[i] = force[i].with(K - 1, at_start.force[i]);

@@ -4,9 +4,13 @@
 //! how it failed. The equations, their matrix and the scale of "relative" are the caller's.
 
 mod diagnostics;
+#[cfg(feature = "std")]
+mod linear;
 mod tally;
 
 pub use diagnostics::{Diagnostics, Worst};
+#[cfg(feature = "std")]
+pub(crate) use linear::LinearProgress;
 pub use tally::{Fallbacks, Statistics, Tally};
 
 /// Stop when the correction after this one would be below this fraction of the unknowns: a quarter of round-off.
@@ -45,20 +49,12 @@ pub(crate) struct Progress {
     corrections: usize,
     /// Relative length of the last correction; 0 before the first.
     previous: f64,
-    /// What it was of the one before, where convergence is linear.
-    #[cfg(feature = "std")]
-    rate: f64,
 }
 
 impl Progress {
     /// The progress of an iteration that goes on after a correction of relative length `previous`.
     pub(crate) const fn after(previous: f64) -> Self {
-        Self {
-            corrections: 0,
-            previous,
-            #[cfg(feature = "std")]
-            rate: 0.0,
-        }
+        Self { corrections: 0, previous }
     }
 
     /// Whether the iteration has converged with a correction of relative length `length`, which has been applied.
@@ -68,21 +64,6 @@ impl Progress {
     #[inline(always)]
     pub(crate) fn has_converged(&mut self, length: f64) -> Result<bool, NotConverged> {
         let is_round_off = predicts_round_off(length, self.previous, 1.0);
-        self.record(length, is_round_off)
-    }
-
-    /// The same for a linearly convergent iteration. What a first guess is off by may shrink faster at first than what is left of it then: the
-    /// slower one of the last two rates predicts the next correction, and the first correction has none.
-    ///
-    /// # Errors
-    /// As for [`has_converged`](Self::has_converged).
-    #[cfg(feature = "std")]
-    #[inline(always)]
-    pub(crate) fn has_converged_linearly(&mut self, length: f64) -> Result<bool, NotConverged> {
-        let rate = if self.previous > 0.0 { length / self.previous } else { 1.0 };
-        let slower = if rate > self.rate { rate } else { self.rate };
-        self.rate = rate;
-        let is_round_off = length * (if slower < 1.0 { slower } else { 1.0 }) < TARGET;
         self.record(length, is_round_off)
     }
 
@@ -179,20 +160,6 @@ mod tests {
     #[test]
     fn quadratic_convergence_stops_when_the_next_correction_is_round_off() {
         assert_eq!(lengths(&[1e-2, 1e-5, 1e-11, f64::NAN]), Ok(Converged { corrections: 3 }));
-    }
-
-    #[cfg(feature = "std")]
-    #[test]
-    fn a_fast_start_is_not_mistaken_for_the_rate_of_convergence() {
-        let passes = |lengths: &[f64]| {
-            let mut progress = Progress::default();
-            lengths.iter().position(|&length| progress.has_converged_linearly(length).expect("numbers"))
-        };
-        // Its second ratio promises 1e-18; at the rate of the third 1e-15 is left.
-        assert_eq!(passes(&[1e-6, 1e-12, 1e-14, 1e-16, 1e-18]), Some(3));
-        assert_eq!(passes(&[1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14, 1e-16]), Some(7));
-        assert_eq!(passes(&[0.0]), Some(0));
-        assert_eq!(passes(&[1e-17]), Some(0));
     }
 
     #[test]

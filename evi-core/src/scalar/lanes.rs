@@ -47,6 +47,17 @@ impl Lanes {
         Self(lanes)
     }
 
+    /// The same numbers, from memory, where a register of all of them has been written.
+    ///
+    /// The compiler puts lanes into registers by looking backwards from where neighbours in memory are written. From sums over lanes, and from products
+    /// with single lanes, it looks for other neighbours, and finds pairs of coordinates instead of eight nodes: a step of the double pendulum then takes
+    /// a third longer. A lane that is to be spread over a register is read from memory anyway.
+    #[inline(always)]
+    #[must_use]
+    pub const fn stored(self) -> Self {
+        core::hint::black_box(self)
+    }
+
     /// `self · factor + term`, rounded once if `FUSED`: the caller knows whether the machine has an instruction for it.
     #[cfg(feature = "std")]
     #[inline(always)]
@@ -79,7 +90,7 @@ impl Lanes {
     /// The largest lane; which one of them it is if some are NaN is not said.
     #[inline(always)]
     pub const fn largest(self) -> f64 {
-        let x = self.0;
+        let x = self.stored().0;
         let pairs = [larger(x[0], x[1]), larger(x[2], x[3]), larger(x[4], x[5]), larger(x[6], x[7])];
         larger(larger(pairs[0], pairs[1]), larger(pairs[2], pairs[3]))
     }

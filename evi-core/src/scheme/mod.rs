@@ -13,6 +13,8 @@ mod frequency;
 mod gauss_tables;
 mod growth;
 #[cfg(feature = "std")]
+mod impulse_tables;
+#[cfg(feature = "std")]
 mod lane_tables;
 mod mode;
 mod mollifier;
@@ -37,6 +39,8 @@ pub use frequency::Frequency;
 #[cfg(feature = "std")]
 pub(crate) use gauss_tables::GaussTables;
 pub use growth::growth_rate;
+#[cfg(feature = "std")]
+pub(crate) use impulse_tables::ImpulseTables;
 #[cfg(feature = "std")]
 pub(crate) use lane_tables::{Columns, LaneTables, PAST};
 pub(crate) use mode::ModeFlow;

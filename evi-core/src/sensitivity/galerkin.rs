@@ -55,6 +55,25 @@ impl<S: MechanicalSystem, T: NodalTables<K>, const K: usize> NodeAction<S, K> fo
     }
 }
 
+/// The points of the step from `start` to `end`, by Newton's iteration.
+fn found_again<S: MechanicalSystem, T: NodalTables<K>, const K: usize>(
+    action: &GalerkinAction<S, T, K>,
+    newton: &mut NewtonSolve<S, K>,
+    start: &State<S>,
+    end: &State<S>,
+) -> Result<Points<S, K>, DerivativeError> {
+    let points = newton.solve(action, start, &mut ())?;
+    let last = &points.differences[K - 1];
+    let apart = largest_magnitude((0..S::N_COORDINATES).map(|i| start.q[i] + last[i] - end.q[i]));
+    let reach = largest_magnitude(end.q.as_ref().iter().chain(last.as_ref()).copied());
+    let is_same = apart <= SAME_END * reach;
+    if is_same {
+        Ok(points)
+    } else {
+        Err(DerivativeError::InnerPoints { t: start.t, distance: apart / reach })
+    }
+}
+
 /// The points as the equations of the step have them.
 fn points<S: MechanicalSystem, const K: usize>(h: f64, step: &TakenStep<S, K>) -> Points<S, K> {
     let impulses = core::array::from_fn(|a| Array::from_fn(|c| h * step.impulses[a][c]));
@@ -79,14 +98,10 @@ impl<S: MechanicalSystem, F: NodalCurves<S>, const K: usize> Differentiable<S> f
         let mut end = state.clone();
         self.advance(&mut end, tally)?;
         let action = self.action();
-        let Points { differences, impulses } = newton.solve(action, &start, &mut ())?;
-        let last = &differences[K - 1];
-        let apart = largest_magnitude((0..S::N_COORDINATES).map(|i| start.q[i] + last[i] - end.q[i]));
-        let reach = largest_magnitude(end.q.as_ref().iter().chain(last.as_ref()).copied());
-        let is_same = apart <= SAME_END * reach;
-        if !is_same {
-            return Err(DerivativeError::InnerPoints { t: start.t, distance: apart / reach });
-        }
+        let Points { differences, impulses } = match self.points_found(&start) {
+            Some(points) => points,
+            None => found_again(action, newton, &start, &end)?,
+        };
         let h = action.h();
         let impulses = core::array::from_fn(|a| Array::from_fn(|c| impulses[a][c] / h));
         let [_, arriving] = OnNodes(action).end_momenta(&start, &differences);

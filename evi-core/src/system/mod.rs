@@ -154,6 +154,23 @@ pub trait MechanicalSystem: Sized {
         }
     }
 
+    /// Calls `visit(row, other, col, G[row][col], G[other][col])` for every pair of entries of the Jacobian in one column with `other ≤ row`: what the
+    /// lower triangle of `G D Gᵀ` with a diagonal `D` is the sum of. Written out as [`for_each_slope`](Self::for_each_slope) is.
+    #[inline(always)]
+    fn for_each_gram_product<T: Copy>(
+        constants: &Self::PerConstant<T>,
+        jacobian: &Self::PerJacobianEntry<T>,
+        mut visit: impl FnMut(usize, usize, usize, T, T),
+    ) {
+        let value = |entry: &Entry| entry.value(constants.as_ref(), jacobian.as_ref());
+        for entry in Self::STRUCTURE.jacobian.q {
+            let is_paired = |other: &&Entry| other.col == entry.col && other.row <= entry.row;
+            for other in Self::STRUCTURE.jacobian.q.iter().filter(is_paired) {
+                visit(entry.row, other.row, entry.col, value(entry), value(other));
+            }
+        }
+    }
+
     /// Calls `visit(row, other, col, G[row][col])` for every pair of entries of the Jacobian in one column, the second of them in the row `other`: what
     /// the entry `(row, other)` of `G D Gᵀ` with a diagonal `D` is the sum of. Written out as [`for_each_slope`](Self::for_each_slope) is.
     #[inline(always)]

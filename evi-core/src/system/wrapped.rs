@@ -112,6 +112,15 @@ macro_rules! unfolded_scene_of_inner {
         }
 
         #[inline(always)]
+        fn for_each_gram_product<T: Copy>(
+            constants: &Self::PerConstant<T>,
+            jacobian: &Self::PerJacobianEntry<T>,
+            visit: impl FnMut(usize, usize, usize, T, T),
+        ) {
+            S::for_each_gram_product(constants, jacobian, visit)
+        }
+
+        #[inline(always)]
         fn for_each_slope_pair<T: Copy>(
             constants: &Self::PerConstant<T>,
             jacobian: &Self::PerJacobianEntry<T>,

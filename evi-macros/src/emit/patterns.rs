@@ -8,7 +8,7 @@ use crate::structure::{Entry, EntryValue, Structure};
 /// Beyond so many calls a loop takes their place: the trait's default.
 const LARGEST_UNROLLED: usize = 500;
 
-/// `for_each_slope`, `for_each_slope_pair`, `for_each_vv` and `for_each_qq`.
+/// `for_each_slope`, `for_each_slope_pair`, `for_each_gram_product`, `for_each_vv` and `for_each_qq`.
 pub(super) fn loops(structure: &Structure) -> TokenStream {
     let slopes = slopes(structure);
     let vv = symmetric("for_each_vv", &structure.hessian_vv);
@@ -26,6 +26,11 @@ fn slopes(structure: &Structure) -> TokenStream {
     if entries.is_empty() || pairs.len() > LARGEST_UNROLLED {
         return TokenStream::new();
     }
+    let products = pairs.iter().filter(|(entry, other)| other.row <= entry.row).map(|(entry, other)| {
+        let (Entry { row, col, .. }, values) = (entry, [value(entry, &quote!(g)), value(other, &quote!(g))]);
+        let other = other.row;
+        quote!(visit(#row, #other, #col, #(#values),*);)
+    });
     let slopes = entries.iter().map(|entry| {
         let (Entry { row, col, .. }, slope) = (entry, value(entry, &quote!(g)));
         quote!(visit(#row, #col, #slope);)
@@ -51,6 +56,15 @@ fn slopes(structure: &Structure) -> TokenStream {
             mut visit: impl ::core::ops::FnMut(usize, usize, usize, T),
         ) {
             #(#pairs)*
+        }
+
+        #[inline(always)]
+        fn for_each_gram_product<T: ::core::marker::Copy>(
+            c: &Self::PerConstant<T>,
+            g: &Self::PerJacobianEntry<T>,
+            mut visit: impl ::core::ops::FnMut(usize, usize, usize, T, T),
+        ) {
+            #(#products)*
         }
     }
 }

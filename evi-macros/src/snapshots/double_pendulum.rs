@@ -609,6 +609,21 @@ const _: () = {
             visit(1usize, 1usize, 3usize, g[5usize]);
         }
         #[inline(always)]
+        fn for_each_gram_product<T: ::core::marker::Copy>(
+            c: &Self::PerConstant<T>,
+            g: &Self::PerJacobianEntry<T>,
+            mut visit: impl ::core::ops::FnMut(usize, usize, usize, T, T),
+        ) {
+            visit(0usize, 0usize, 0usize, g[0usize], g[0usize]);
+            visit(0usize, 0usize, 1usize, g[1usize], g[1usize]);
+            visit(1usize, 0usize, 0usize, g[2usize], g[0usize]);
+            visit(1usize, 1usize, 0usize, g[2usize], g[2usize]);
+            visit(1usize, 0usize, 1usize, g[3usize], g[1usize]);
+            visit(1usize, 1usize, 1usize, g[3usize], g[3usize]);
+            visit(1usize, 1usize, 2usize, g[4usize], g[4usize]);
+            visit(1usize, 1usize, 3usize, g[5usize], g[5usize]);
+        }
+        #[inline(always)]
         fn for_each_vv<T: ::core::marker::Copy>(
             c: &Self::PerConstant<T>,
             h: &Self::PerHessianEntry<T>,

@@ -495,6 +495,16 @@ const _: () = {
             visit(0usize, 0usize, 2usize, g[2usize]);
         }
         #[inline(always)]
+        fn for_each_gram_product<T: ::core::marker::Copy>(
+            c: &Self::PerConstant<T>,
+            g: &Self::PerJacobianEntry<T>,
+            mut visit: impl ::core::ops::FnMut(usize, usize, usize, T, T),
+        ) {
+            visit(0usize, 0usize, 0usize, g[0usize], g[0usize]);
+            visit(0usize, 0usize, 1usize, g[1usize], g[1usize]);
+            visit(0usize, 0usize, 2usize, g[2usize], g[2usize]);
+        }
+        #[inline(always)]
         fn for_each_vv<T: ::core::marker::Copy>(
             c: &Self::PerConstant<T>,
             h: &Self::PerHessianEntry<T>,

@@ -1,6 +1,6 @@
 //! Passes over all nodes of a step, a node per lane.
 //!
-//! The formulas are those of `mechanics/lane_step.rs`: with the accelerations `aⱼ = M⁻¹ Fⱼ` of the total forces `Fⱼ = ∂L/∂q + f − Gᵀλⱼ` and
+//! The formulas are those of `mechanics/lane_step`: with the accelerations `aⱼ = M⁻¹ Fⱼ` of the total forces `Fⱼ = ∂L/∂q + f − Gᵀλⱼ` and
 //! `Sᵢ = Gᵢ M⁻¹ Gᵢᵀ`, a pass is
 //!
 //! ```text
@@ -19,7 +19,7 @@ use super::super::scene::{ConstantInertia, PreparedScene};
 use super::super::sparse::Symmetric;
 use crate::mechanics::product;
 use crate::memory::memory;
-use crate::newton::{NotConverged, Progress};
+use crate::newton::{LinearProgress, NotConverged};
 use crate::scalar::{InstructionSet, LaneOperation, Lanes, Scalar};
 use crate::scheme::{LaneTables, PAST};
 
@@ -215,7 +215,7 @@ impl NodeStorage {
         let per_reach = 1.0 / reach;
         // Residuals of constraints are those of positions that are rounded: no pass gains what is lost there.
         let rounded = if is_constrained { reach / whole } else { 1.0 };
-        let mut progress = Progress::default();
+        let mut progress = LinearProgress::default();
         let (mut is_stale, mut passes) = (true, 0);
         loop {
             if is_constrained {
@@ -265,7 +265,8 @@ impl NodeStorage {
             let length = lengths.largest() * per_reach;
             is_stale = length > STALE;
             // In the first pass nothing has moved yet.
-            if (passes == 1 && force_varies) || !progress.has_converged_linearly(rounded * length)? {
+            let square = (rounded * length) * (rounded * length);
+            if (passes == 1 && force_varies) || !progress.has_converged(square)? {
                 continue;
             }
             // Comparisons lose a NaN on the way; at the end of a step it arrives from every node.

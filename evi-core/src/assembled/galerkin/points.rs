@@ -24,7 +24,7 @@ use super::super::sparse::TooMuchFill;
 use super::passes::FirstGuess;
 use crate::mechanics::{product, reach};
 use crate::memory::memory;
-use crate::newton::{NotConverged, Progress};
+use crate::newton::{LinearProgress, NotConverged};
 use crate::scalar::{InstructionSet, LaneOperation, Lanes, Scalar};
 use crate::scheme::{Columns, PAST, PointTables};
 
@@ -229,7 +229,7 @@ impl PointStorage {
         let n = assembly.n_coordinates;
         let times = self.tables.lobatto.nodes + Lanes::splat(start.t);
         let mut per_reach = 0.0;
-        let mut progress = Progress::default();
+        let mut progress = LinearProgress::default();
         let (mut is_stale, mut is_last, mut passes) = (true, false, 0);
         loop {
             for i in 0..n {
@@ -266,7 +266,7 @@ impl PointStorage {
             let length = self.apply::<K, FUSED>(n) * per_reach;
             is_stale = length > STALE;
             // Then once more, for the forces where the points have come to.
-            is_last = progress.has_converged_linearly(length)?;
+            is_last = progress.has_converged(length * length)?;
         }
     }
 

@@ -7,7 +7,7 @@ mod points;
 use core::fmt;
 
 use super::{Compensable, CompensableStep, OneStep, Scheme, StepError, Symmetric, Tally};
-use crate::mechanics::{Dropped, GalerkinAction, Lost, LostDigits, Mechanics, RoundOff, State, Sum};
+use crate::mechanics::{Dropped, GalerkinAction, Lost, LostDigits, Mechanics, Points, RoundOff, State, Sum};
 use crate::memory::memory;
 use crate::scalar::InstructionSet;
 use crate::scheme::{Frequency, Linear, NodalCurves, SchemeError, checked_step_size};
@@ -127,6 +127,11 @@ impl<S: MechanicalSystem, F: NodalCurves<S>, const K: usize> GalerkinStep<S, F, 
     /// The action of a step.
     pub(crate) const fn action(&self) -> &GalerkinAction<S, F::Tables<K>, K> {
         &self.action
+    }
+
+    /// The points of the step from `start` that was taken last, where passes on a constant mass have found them.
+    pub(crate) fn points_found(&self, start: &State<S>) -> Option<Points<S, K>> {
+        self.passes.as_ref()?.points_found(start)
     }
 
     /// How its steps are solved: which iteration, in which vector instructions; to be printed.

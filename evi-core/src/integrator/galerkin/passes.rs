@@ -7,7 +7,7 @@ use crate::array::Array;
 use crate::integrator::{StepError, Tally};
 use crate::linear::{Factorization, largest_magnitude};
 use crate::mechanics::{
-    FirstGuess, LaneEnd, LaneStep, Lost, Mechanics, Passes, ProjectionError, RoundOff, State, Sum,
+    FirstGuess, LaneEnd, LaneStep, Lost, Mechanics, Passes, Points, ProjectionError, RoundOff, State, Sum,
 };
 use crate::memory::memory;
 use crate::scalar::{InstructionSet, Lanes};
@@ -24,7 +24,7 @@ const SLIGHT: f64 = 1e-10;
 pub(super) struct LanePasses<S: MechanicalSystem, const K: usize> {
     step: LaneStep<S, K>,
     instructions: InstructionSet,
-    /// The accelerations of the last steps, the last one first. They affect the number of passes and the last bits of a state,
+    /// The ways of the last steps, the last one first. They affect the number of passes and the last bits of a state,
     /// nothing else.
     past: [S::PerCoordinate<Lanes>; PAST],
     /// How many of them are known.
@@ -49,6 +49,18 @@ impl<S: MechanicalSystem, const K: usize> LanePasses<S, K> {
 
     pub(super) const fn instruction_set(&self) -> InstructionSet {
         self.instructions
+    }
+
+    /// The points of the step from `start` that was taken last, if it was by passes; as equations of all points have them.
+    pub(super) fn points_found(&self, start: &State<S>) -> Option<Points<S, K>> {
+        if self.known == 0 {
+            return None;
+        }
+        let (differences, impulses) = self.step.points_found(start);
+        Some(Points {
+            differences,
+            impulses: impulses.map(|of_node| Array::from_fn(|c| self.h * of_node[c])),
+        })
     }
 
     /// The end of the step without a past.
@@ -132,7 +144,7 @@ impl<S: MechanicalSystem, const K: usize> NodePasses<S> for LanePasses<S, K> {
         let (p, lost_p) = momentum.split();
         state.replace(t, q, v, p)?;
         self.past.swap(0, 1);
-        self.past[0].clone_from(&self.step.accelerations);
+        self.past[0].clone_from(&self.step.ways);
         self.known = PAST.min(self.known + 1);
         Ok([lost_q, lost_p])
     }
@@ -146,8 +158,8 @@ impl<S: MechanicalSystem, const K: usize> NodePasses<S> for LanePasses<S, K> {
 // The storage of the passes is written anew in every step.
 memory!([S: MechanicalSystem, const K: usize] LanePasses<S, K>, |words|
     Self { step: _, instructions: _, past, known, h: _ } => {
-        for accelerations in past {
-            words.lanes(accelerations);
+        for ways in past {
+            words.lanes(ways);
         }
         words.index(known);
     }
