@@ -13,6 +13,10 @@ pub(crate) struct LaneEnd<S: MechanicalSystem> {
     pub(crate) passes: usize,
 }
 
+/// Differences and impulses, node by node.
+pub(crate) type FoundPoints<S, const K: usize> =
+    ([<S as MechanicalSystem>::PerCoordinate<f64>; K], [<S as MechanicalSystem>::PerConstraint<f64>; K]);
+
 impl<S: MechanicalSystem, const K: usize> LaneStep<S, K> {
     /// `M⁻¹ F` at one node.
     #[inline]
@@ -43,10 +47,7 @@ impl<S: MechanicalSystem, const K: usize> LaneStep<S, K> {
     }
 
     /// The points of the last passes, which began at `start`: `qₐ − q₀` of the nodes `a = 1 .. K`, and `Λₐ` of `a = 0 .. K−1`.
-    pub(crate) fn points_found(
-        &self,
-        start: &State<S>,
-    ) -> ([S::PerCoordinate<f64>; K], [S::PerConstraint<f64>; K]) {
+    pub(crate) fn points_found(&self, start: &State<S>) -> FoundPoints<S, K> {
         let differences = self.differences::<false>(&self.ways, &self.inertial(start));
         let differences = |a: usize| Array::from_fn(|i| differences[i].to_array()[a]);
         let impulses = |a: usize| {
