@@ -51,16 +51,9 @@ impl<S: MechanicalSystem, const K: usize> LanePasses<S, K> {
         self.instructions
     }
 
-    /// The points of the step from `start` that was taken last, if it was by passes; as equations of all points have them.
+    /// The points of the step from `start` that was taken last, if it was by passes.
     pub(super) fn points_found(&self, start: &State<S>) -> Option<Points<S, K>> {
-        if self.known == 0 {
-            return None;
-        }
-        let (differences, impulses) = self.step.points_found(start);
-        Some(Points {
-            differences,
-            impulses: impulses.map(|of_node| Array::from_fn(|c| self.h * of_node[c])),
-        })
+        (self.known > 0).then(|| self.step.points_found(start, self.h))
     }
 
     /// The end of the step without a past.

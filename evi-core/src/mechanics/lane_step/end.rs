@@ -2,7 +2,7 @@
 
 use super::LaneStep;
 use crate::array::Array;
-use crate::mechanics::{ForcePoint, Mechanics, State};
+use crate::mechanics::{ForcePoint, Mechanics, Points, State};
 use crate::system::MechanicalSystem;
 
 /// The end of a step before the constraints are met there to round-off.
@@ -12,10 +12,6 @@ pub(crate) struct LaneEnd<S: MechanicalSystem> {
     /// Passes taken.
     pub(crate) passes: usize,
 }
-
-/// Differences and impulses, node by node.
-pub(crate) type FoundPoints<S, const K: usize> =
-    ([<S as MechanicalSystem>::PerCoordinate<f64>; K], [<S as MechanicalSystem>::PerConstraint<f64>; K]);
 
 impl<S: MechanicalSystem, const K: usize> LaneStep<S, K> {
     /// `M⁻¹ F` at one node.
@@ -46,14 +42,14 @@ impl<S: MechanicalSystem, const K: usize> LaneStep<S, K> {
         gain
     }
 
-    /// The points of the last passes, which began at `start`: `qₐ − q₀` of the nodes `a = 1 .. K`, and `Λₐ` of `a = 0 .. K−1`.
-    pub(crate) fn points_found(&self, start: &State<S>) -> FoundPoints<S, K> {
+    /// The points of the last passes, of size `h` and from `start`: as the equations of all points have them, which know `h Λ`.
+    pub(crate) fn points_found(&self, start: &State<S>, h: f64) -> Points<S, K> {
         let differences = self.differences::<false>(&self.ways, &self.inertial(start));
-        let differences = |a: usize| Array::from_fn(|i| differences[i].to_array()[a]);
-        let impulses = |a: usize| {
+        let difference = |a: usize| Array::from_fn(|i| differences[i].to_array()[a]);
+        let impulse = |a: usize| {
             let lane = if a == 0 { K - 1 } else { a - 1 };
-            Array::from_fn(|c| self.multipliers[c].to_array()[lane])
+            Array::from_fn(|c| h * self.multipliers[c].to_array()[lane])
         };
-        (core::array::from_fn(differences), core::array::from_fn(impulses))
+        Points { differences: core::array::from_fn(difference), impulses: core::array::from_fn(impulse) }
     }
 }
