@@ -17,7 +17,7 @@ use super::super::gram::GramPattern;
 use super::super::mass::ConstantMass;
 use super::super::scene::{ConstantInertia, PreparedScene};
 use super::super::sparse::Symmetric;
-use crate::mechanics::product;
+use crate::mechanics::product_of_stored as product;
 use crate::memory::memory;
 use crate::newton::{LinearProgress, NotConverged};
 use crate::scalar::{InstructionSet, LaneOperation, Lanes, Scalar};
