@@ -369,4 +369,5 @@ fn no_step_of_an_assembled_scene_allocates() {
     check_assembled(net(3), Evi::midpoint(0.01));
     check_assembled(net(3), Evi::trapezoid(0.01));
     check_assembled(net(3), Galerkin::<8>::new(0.02));
+    check_assembled(net(3), Galerkin::<8>::new(0.02).by_newton());
 }

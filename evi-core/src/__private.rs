@@ -1,7 +1,9 @@
 //! What emitted code names. Not part of the public API.
 
 #[cfg(feature = "std")]
-pub use crate::assembled::{AssembledSystem, Family, FamilyVisitor};
+pub use crate::assembled::{
+    AssembledReport, AssembledSystem, Family, FamilyReport, FamilyVisitor, ObservedVisitor,
+};
 pub use crate::generic::GenericSystem;
 pub use crate::linear::{DenseLu, Elimination, Guarded, Inverse0, Inverse1, Inverse2, reciprocal_pivot};
 pub use crate::scalar::Scalar;

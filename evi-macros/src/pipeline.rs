@@ -62,5 +62,6 @@ fn expand_loops(declaration: &syntax::Declaration, mut diagnostics: Diagnostics)
     if !diagnostics.is_empty() {
         return emit::assembled_fallback(declaration, &diagnostics);
     }
-    emit::assembled(declaration, &assembled, &graph, &programs)
+    let written = model::written(declaration);
+    emit::assembled(declaration, &assembled, &graph, &programs, &written)
 }

@@ -1,10 +1,14 @@
 //! A rope of 1,000 links, hung at both ends and let go from a curve that is not its rest.
 
+use std::convert::Infallible;
 use std::error::Error;
+use std::ops::ControlFlow;
 
-use evi_core::assembled::AssembledSimulation;
+use evi_core::assembled::{AssembledRun, AssembledSimulation};
 use evi_core::prelude::*;
+use evi_core::watch::every;
 use evi_examples::GRAVITY;
+use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::svg::{Line, animation};
 
@@ -54,16 +58,22 @@ pub(crate) fn animated() -> Result<String, Box<dyn Error>> {
     let rope = Rope { m: 0.3 / N as f64, l, hook, g: GRAVITY };
     let simulation = AssembledSimulation::new(rope, Evi::midpoint(H).rescued::<6>());
     let mut run = simulation.start(joints.concat(), vec![0.0; 2 * N])?;
+    print!("{}", run.report());
     let energy = run.energy();
     let drawn = |q: &[f64]| {
         let joints = q.chunks_exact(2).map(|place| [place[0], place[1]]).step_by(DRAWN);
         [[0.0; 2]].into_iter().chain(joints).chain([hook]).collect::<Vec<[f64; 2]>>()
     };
     let mut frames = vec![drawn(run.state().q())];
-    run.advance_sampled(SECONDS, STEPS_PER_FRAME, |run| -> Result<(), StepError> {
+    let style = ProgressStyle::with_template("{bar:30} {pos} of {len} steps, about {eta} left")?;
+    let bar = ProgressBar::new(run.steps_to(SECONDS)?).with_style(style);
+    let mut draw = every(STEPS_PER_FRAME, |run: &AssembledRun<Rope, _>| -> ControlFlow<Infallible> {
         frames.push(drawn(run.state().q()));
-        Ok(())
-    })?;
+        bar.set_position(run.steps());
+        ControlFlow::Continue(())
+    });
+    run.advance_observed(SECONDS, &mut draw)?;
+    bar.finish_and_clear();
     println!(
         "rope: {} steps to t = {SECONDS} s, energy off by {:+.1e} J, constraints by {:.1e} m²",
         run.steps(),

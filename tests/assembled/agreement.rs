@@ -41,7 +41,7 @@ fn chains_move_as_those_of_the_gallery() {
 
 /// Two scenes that do not touch each other, their coordinates in turn.
 #[derive(Clone)]
-struct Twice<E>(E);
+pub(crate) struct Twice<E>(pub(crate) E);
 
 /// Either of them.
 struct Either<E>(core::marker::PhantomData<E>);
@@ -72,7 +72,8 @@ impl<E: MechanicalSystem + Clone + 'static> AssembledSystem for Twice<E> {
     }
 }
 
-/// Either copy ends where the scene itself does, to round-off of the largest number: 1.7e-15 of it measured.
+/// Either copy ends where the scene itself does, to round-off of the largest number: 4.0e-15 of it measured, of velocities that Galerkin steps of 0.2 ms find
+/// from positions.
 #[track_caller]
 fn check_twice<E, F, const N: usize>(scene: E, start: Start<N>, scheme: F, end: f64)
 where
@@ -90,7 +91,7 @@ where
     {
         let difference = largest_difference(&doubled(*one), two) / largest_difference(one, &[0.0; N]);
         println!("{}: {difference:e}", core::panic::Location::caller());
-        assert!(difference < 3e-15, "{difference:e}");
+        assert!(difference < 5e-15, "{difference:e}");
         assert!(largest_difference(one, &start) > 1e-3, "it moves");
     }
 }
@@ -100,6 +101,7 @@ fn scenes_of_every_structure_move_side_by_side_as_alone() {
     // A mass that varies, and constraints; constraints and a potential that vary with time; friction.
     let squeezer = AndrewsSqueezer::STANDARD;
     check_twice(squeezer, squeezer.standard_start(), Evi::midpoint(5e-5), 1e-3);
+    check_twice(squeezer, squeezer.standard_start(), Galerkin::<3>::new(2e-4), 1e-3);
     check_twice(CarAxis::STANDARD, CarAxis::STANDARD.standard_start(), Evi::simpson(0.01), 0.3);
     let damped = DrivenPendulum::STANDARD;
     check_twice(damped, damped.horizontal(), Evi::midpoint(0.01), 0.3);

@@ -5,3 +5,4 @@ mod bodies;
 mod dense;
 mod loops;
 mod unrolled;
+mod watched;

@@ -1,8 +1,9 @@
 //! A scene whose elements have been prepared: what it adds up, at one point.
 
-use super::elements::{Elements, Repeated};
+use super::elements::{Elements, LanePoint, ObservedElements, Repeated, Term};
 use super::number::Number;
-use super::{AssembledSystem, AssemblyError, Family, FamilyVisitor};
+use super::{AssembledSystem, AssemblyError, Family, FamilyVisitor, ObservedVisitor};
+use crate::memory::memory;
 use crate::scalar::{InstructionSet, Lanes, Scalar};
 use crate::system::Structure;
 
@@ -19,6 +20,8 @@ pub(super) struct Assembly {
     pub(super) n_coordinates: usize,
     pub(super) n_constraints: usize,
     pub(super) families: Vec<PlacedFamily>,
+    /// Terms of observed quantities, each with the quantity.
+    observed: Vec<(usize, Box<dyn Term>)>,
     /// Constraint and coordinate of every slope.
     pub(super) slots: Vec<Slot>,
     pub(super) traits: Traits,
@@ -27,7 +30,7 @@ pub(super) struct Assembly {
 /// A family, and where its constraints and slopes stand among those of the scene.
 pub(super) struct PlacedFamily {
     pub(super) elements: Box<dyn Elements>,
-    rows: std::ops::Range<usize>,
+    pub(super) rows: std::ops::Range<usize>,
     slopes: std::ops::Range<usize>,
 }
 
@@ -55,6 +58,8 @@ pub(super) struct Traits {
     pub(super) force_is_on_t: bool,
     /// Some constraint depends on time.
     pub(super) constraints_are_on_t: bool,
+    /// Forces depend on what the caller sets.
+    pub(super) force_is_on_inputs: bool,
 }
 
 impl Traits {
@@ -66,11 +71,12 @@ impl Traits {
         force_is_on_v: false,
         force_is_on_t: false,
         constraints_are_on_t: false,
+        force_is_on_inputs: false,
     };
 
     /// Whether forces, those of the constraints aside, never change.
     pub(super) const fn has_uniform_force(&self) -> bool {
-        !(self.force_is_on_q || self.force_is_on_v || self.force_is_on_t)
+        !(self.force_is_on_q || self.force_is_on_v || self.force_is_on_t || self.force_is_on_inputs)
     }
 
     /// Whether they change while the nodes of a step are sought.
@@ -88,6 +94,7 @@ impl Traits {
             force_is_on_v: self.force_is_on_v || !element.hessian.vq.is_empty() || on.on_v,
             force_is_on_t: self.force_is_on_t || element.lagrangian.on_t || on.on_t,
             constraints_are_on_t: self.constraints_are_on_t || element.constraints.on_t,
+            force_is_on_inputs: self.force_is_on_inputs || element.forces.on_inputs,
         }
     }
 }
@@ -96,6 +103,15 @@ impl Traits {
 struct Preparation<'a, S> {
     system: &'a S,
     families: Vec<Box<dyn Elements>>,
+    observed: Vec<(usize, Box<dyn Term>)>,
+}
+
+impl<S> ObservedVisitor<S> for Preparation<'_, S> {
+    fn term<F: Family<S>>(&mut self, quantity: usize) {
+        let element = |index| (F::element(self.system, index), F::coordinates(self.system, index));
+        let elements = (0..F::count(self.system)).map(element);
+        self.observed.push((quantity, Box::new(ObservedElements::new(elements))));
+    }
 }
 
 impl<S> FamilyVisitor<S> for Preparation<'_, S> {
@@ -111,14 +127,20 @@ impl Assembly {
     /// # Errors
     /// [`AssemblyError`] for elements that lie elsewhere, or whose parameters are no numbers.
     pub(super) fn new<S: AssembledSystem>(system: &S) -> Result<Self, AssemblyError> {
-        let mut preparation = Preparation { system, families: Vec::new() };
+        let mut preparation = Preparation { system, families: Vec::new(), observed: Vec::new() };
         system.visit_families(&mut preparation);
+        system.visit_observed(&mut preparation);
+        let Preparation { families: found, observed, .. } = preparation;
         let n_coordinates = system.n_coordinates();
         let (mut rows, mut families, mut slots) = (0, Vec::new(), Vec::new());
         let mut traits = Traits::OF_NOTHING;
-        for (family, elements) in preparation.families.into_iter().enumerate() {
+        for (family, elements) in found.into_iter().enumerate() {
             if let Some((element, name, value)) = elements.parameter_that_is_not_finite() {
                 return Err(AssemblyError::Parameter { family, element, name, value });
+            }
+            let (expected, found) = (S::INPUTS.len(), elements.n_inputs());
+            if found != 0 && found != expected {
+                return Err(AssemblyError::Inputs { family, expected, found });
             }
             let (first_row, first_slope) = (rows, slots.len());
             for element in 0..elements.count() {
@@ -134,7 +156,20 @@ impl Assembly {
             }
             families.push(PlacedFamily { elements, rows: first_row..rows, slopes: first_slope..slots.len() });
         }
-        Ok(Self { n_coordinates, n_constraints: rows, families, slots, traits })
+        Ok(Self { n_coordinates, n_constraints: rows, families, observed, slots, traits })
+    }
+
+    /// Sets what forces take from the caller.
+    pub(super) fn set_inputs(&mut self, inputs: &[f64]) {
+        self.families.iter_mut().for_each(|family| family.elements.set_inputs(inputs));
+    }
+
+    /// Overwrites the observed quantities.
+    pub(super) fn observe(&self, at: Point<'_>, inputs: &[f64], quantities: &mut [f64]) {
+        quantities.fill(0.0);
+        for (quantity, term) in &self.observed {
+            quantities[*quantity] += term.sum(at, inputs);
+        }
     }
 
     /// Energy `H = v · ∂L/∂v − L`.
@@ -201,6 +236,21 @@ impl Assembly {
         force.fill(Lanes::ZERO);
         for family in self.families.iter().filter(|family| family.has_force()) {
             family.elements.add_lane_force(instructions, t, q, v, force);
+        }
+    }
+
+    /// Overwrites `∂L/∂q + f` and `∂L/∂v` at a node per lane.
+    pub(super) fn lane_gradient(
+        &self,
+        instructions: InstructionSet,
+        at: LanePoint<'_>,
+        force: &mut [Lanes],
+        momentum: &mut [Lanes],
+    ) {
+        force.fill(Lanes::ZERO);
+        momentum.fill(Lanes::ZERO);
+        for family in &self.families {
+            family.elements.add_lane_gradient(instructions, at, force, momentum);
         }
     }
 
@@ -319,6 +369,12 @@ pub(super) struct ConstraintsAt {
     /// `∂φ/∂t`, zero for families without time.
     pub(super) rates: Vec<f64>,
 }
+
+memory!([] ConstraintsAt, |words| Self { values, slopes, rates } => {
+    for numbers in [values, slopes, rates] {
+        words.slice(numbers);
+    }
+});
 
 impl ConstraintsAt {
     /// Storage for those of a scene.

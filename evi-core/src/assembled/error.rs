@@ -1,5 +1,6 @@
 //! Why a run of an assembled scene cannot start.
 
+use crate::integrator::ResumeError;
 use crate::linear::SingularMatrix;
 use crate::mechanics::ProjectionError;
 use crate::scheme::SchemeError;
@@ -54,6 +55,18 @@ pub enum AssemblyError {
         name: &'static str,
         /// Its value.
         value: f64,
+    },
+    /// An element has other inputs than the scene.
+    #[error(
+        "elements of family {family} have {found} inputs, the scene has {expected}: an element has all of them or none"
+    )]
+    Inputs {
+        /// The family, counted from 0 in the order of declaration.
+        family: usize,
+        /// Number of inputs of the scene.
+        expected: usize,
+        /// Number of inputs of an element.
+        found: usize,
     },
     /// Positions or velocities are not one per coordinate.
     #[error("{quantity} of the start has {found} values, the scene {expected} coordinates")]
@@ -113,6 +126,9 @@ pub enum AssemblyError {
     /// The start cannot be brought onto the constraints to the last digit.
     #[error("start: {0}")]
     Projection(#[from] ProjectionError),
+    /// The checkpoint does not belong to the simulation.
+    #[error(transparent)]
+    Checkpoint(#[from] ResumeError),
     /// Elimination fills in too much.
     #[error(
         "{unknowns} unknowns are coupled so much that elimination takes more than {most} products; the feature `sparse` of evi-core has a \

@@ -1,5 +1,7 @@
 //! What the last steps let expect of the next one.
 
+use crate::memory::memory;
+
 /// A prediction is followed where it missed the last step by no more than this fraction.
 const TRUSTED: f64 = 1.0 / 64.0;
 
@@ -49,6 +51,14 @@ impl History {
         (self.known, self.is_trusted) = (0, false);
     }
 }
+
+memory!([] History, |words| Self { predicted, previous: [last, before], known, is_trusted } => {
+    for values in [predicted, last, before] {
+        words.slice(values);
+    }
+    words.index(known);
+    words.flag(is_trusted);
+});
 
 #[cfg(test)]
 mod tests {

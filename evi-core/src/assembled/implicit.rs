@@ -20,6 +20,7 @@ use super::{AssembledState, failure};
 use crate::integrator::{IterationFailure, StepError, Tally};
 use crate::linear::{SingularMatrix, largest_magnitude};
 use crate::mechanics::relative;
+use crate::memory::memory;
 use crate::newton::Progress;
 
 /// The matrix is made anew for a correction that is not below this share of the one before.
@@ -214,6 +215,12 @@ impl ImplicitStep {
         }
     }
 }
+
+memory!([] ImplicitStep, |words| Self { h, nodes, sags } => {
+    words.fixed(*h);
+    nodes.for_each_number(|number| words.fixed(number));
+    words.part(sags);
+});
 
 /// Overwrites `space.pull` and `space.v` with the position and velocity at `c` on the way `space.moved`.
 fn place(space: &mut Space, state: &AssembledState, c: f64, h: f64) {

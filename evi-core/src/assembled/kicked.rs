@@ -17,6 +17,7 @@ use super::scene::{ConstantInertia, PreparedScene, Space};
 use super::{AssembledState, failure};
 use crate::integrator::{IterationFailure, StepError, Tally};
 use crate::linear::{SingularMatrix, largest_magnitude};
+use crate::memory::memory;
 use crate::newton::Progress;
 
 /// The matrix is made anew for a residual that is not below this share of the one before: Newton's corrections shrink residuals more, and
@@ -236,6 +237,13 @@ impl KickedStep {
         }
     }
 }
+
+// How forces act follows from the scene and the nodes.
+memory!([] KickedStep, |words| Self { h, nodes, kicks: _, impulses } => {
+    words.fixed(*h);
+    nodes.for_each_number(|number| words.fixed(number));
+    words.part(impulses);
+});
 
 fn set_scaled(sum: &mut [f64], factor: f64, terms: &[f64]) {
     sum.iter_mut().zip(terms).for_each(|(sum, term)| *sum = factor * term);

@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 
 use super::assembly::{Assembly, Point};
-use super::elements::{SecondWeights, for_each_second_derivative, n_second_derivatives};
+use super::elements::{for_each_second_derivative, n_second_derivatives};
 use super::number::Number;
+use super::projection::MASS;
 use super::{AssembledSystem, AssemblyError};
 
 /// Coordinates of one body that its mass couples: twelve in directors.
@@ -26,14 +27,13 @@ pub(super) struct ConstantMass {
 
 /// The places of the mass matrix of a scene, with its values at one point.
 pub(super) fn mass_matrix(assembly: &Assembly, at: Point<'_>) -> BTreeMap<(usize, usize), f64> {
-    let weights = SecondWeights { vv: 1.0, vq: 0.0, qv: 0.0, qq: 0.0, fq: 0.0, fv: 0.0 };
     let mut matrix = BTreeMap::new();
     for family in &assembly.families {
         let elements = &*family.elements;
         let per_element = n_second_derivatives(elements.structure());
         let count = per_element * elements.count();
         let (places, mut entries) = ((0..count as u32).collect::<Vec<_>>(), vec![0.0; count]);
-        elements.add_second_derivatives(at, &weights, &places, &mut entries);
+        elements.add_second_derivatives(at, &MASS, &places, &mut entries);
         let vv = elements.structure().hessian.vv;
         let n_mass = vv.iter().map(|entry| if entry.row == entry.col { 1 } else { 2 }).sum();
         for (element, entries) in entries.chunks_exact(per_element.max(1)).enumerate() {

@@ -69,6 +69,7 @@
 //! ```
 
 mod assembly;
+mod checkpoint;
 mod elements;
 mod error;
 mod failure;
@@ -77,10 +78,12 @@ mod gram;
 mod history;
 mod implicit;
 mod kicked;
+mod lane_saddle;
 mod mass;
 mod nodes;
 mod number;
 mod projection;
+mod report;
 mod rescue;
 mod run;
 mod saddle;
@@ -95,11 +98,13 @@ mod writer;
 use assembly::Point;
 pub use error::AssemblyError;
 pub use galerkin::AssembledGalerkin;
+pub use report::{AssembledReport, FamilyReport, RunReport};
 pub use rescue::AssembledRescued;
 pub use run::AssembledRun;
 pub use scene::PreparedScene;
 pub use scheme::{AssembledComposed, AssembledEvi, AssembledScheme, AssembledStep};
+pub use sparse::Effort;
 pub use start::AssembledSimulation;
 pub use state::AssembledState;
-pub use system::{AssembledSystem, Family, FamilyVisitor};
+pub use system::{AssembledSystem, Family, FamilyVisitor, ObservedVisitor};
 pub use writer::StateWriter;

@@ -25,6 +25,14 @@ impl Nodes {
         self.0.iter()
     }
 
+    /// Calls `see` for the numbers that tell this rule from another.
+    pub(super) fn for_each_number(&self, mut see: impl FnMut(f64)) {
+        for Node { time, weight } in &self.0 {
+            see(*time);
+            see(*weight);
+        }
+    }
+
     /// Whether it is the trapezoidal rule.
     pub(super) fn are_the_ends(&self) -> bool {
         // Exactly: rounded nodes lie beside the ends.

@@ -15,12 +15,52 @@ use crate::newton;
 /// velocities are then below 1/128 of the motion's.
 const LARGEST_REST: f64 = 1.0 / 16384.0;
 
+/// Of a saddle-point matrix with the mass.
+pub(super) const MASS: SecondWeights = SecondWeights { vv: 1.0, vq: 0.0, qv: 0.0, qq: 0.0, fq: 0.0, fv: 0.0 };
+
 impl PreparedScene {
+    /// Moves `space.q` onto the constraints, from a point that is beside them by little, across them in the metric of the mass; overwrites `space.at_end`
+    /// with the constraints there. `space.v` is a velocity, where the mass depends on it.
+    pub(super) fn meet_constraints(&mut self, t: f64) -> Result<(), ProjectionError> {
+        let Self { assembly, inertia, saddle, space, .. } = self;
+        if assembly.n_constraints == 0 {
+            return Ok(());
+        }
+        let n = assembly.n_coordinates;
+        assembly.constraint_derivatives(t, &space.q, &mut space.at_end);
+        match (inertia, saddle) {
+            (Some(ConstantInertia { mass, gram }), _) => {
+                gram.factor(mass, &space.at_end.slopes).map_err(|(_, matrix)| matrix)?;
+                space.rates.copy_from_slice(&space.at_end.values);
+                gram.solve(&mut space.rates);
+                space.pull.fill(0.0);
+                let (slopes, slots) = (&space.at_end.slopes, &assembly.slots);
+                subtract_pull::<f64, false>(slots, slopes, &space.rates, &mut space.pull);
+                mass.inverse_times(&space.pull, &mut space.moved);
+            }
+            (None, Some(saddle)) => {
+                saddle.clear();
+                saddle.add_second_derivatives(assembly, Point { t, q: &space.q, v: &space.v }, &MASS);
+                saddle.set_constraints(&space.at_end, &space.at_end);
+                saddle.factor()?;
+                space.unknowns[..n].fill(0.0);
+                let below = space.unknowns[n..].iter_mut();
+                below.zip(&space.at_end.values).for_each(|(unknown, value)| *unknown = -value);
+                saddle.solve(&mut space.unknowns);
+                space.moved.copy_from_slice(&space.unknowns[..n]);
+            }
+            (None, None) => return Err(SingularMatrix { pivot_ratio: f64::NAN }.into()),
+        }
+        space.q.iter_mut().zip(&space.moved).for_each(|(q, moved)| *q += moved);
+        assembly.constraint_derivatives(t, &space.q, &mut space.at_end);
+        Ok(())
+    }
+
     /// Removes from the momentum `space.p` at the end of a step the impulse `Gᵀ N` that leaves the constraints: solves
     /// `∂L/∂v(t, q, v) + Gᵀ N = p`, `G v + ∂φ/∂t = 0` with the constraints `space.at_end`, and overwrites `space.v` (Marsden & West, Acta
     /// Numerica 10 (2001), sec. 3.5). `N` is expected to be near `space.impulse`; `space.v` is the first guess where the mass depends on `v`.
     pub(super) fn project(&mut self, t: f64, tally: &mut impl Tally) -> Result<(), ProjectionError> {
-        let Self { assembly, inertia, saddle, space } = self;
+        let Self { assembly, inertia, saddle, space, .. } = self;
         match (inertia, saddle) {
             (Some(ConstantInertia { mass, gram }), _) => {
                 let pivot_ratio = gram.factor(mass, &space.at_end.slopes).map_err(|(_, matrix)| matrix)?;
@@ -83,7 +123,6 @@ fn project_by_saddle(
     t: f64,
     tally: &mut impl Tally,
 ) -> Result<(), ProjectionError> {
-    const MASS: SecondWeights = SecondWeights { vv: 1.0, vq: 0.0, qv: 0.0, qq: 0.0, fq: 0.0, fv: 0.0 };
     let n = assembly.n_coordinates;
     let mut correct = || -> Result<f64, ProjectionError> {
         let Space { q, v, p, force, momentum, impulse, unknowns, at_end, .. } = space;

@@ -2,6 +2,7 @@
 
 use super::{AssembledScheme, AssembledState, AssembledStep, AssemblyError, PreparedScene};
 use crate::integrator::{Rescued, Rescues, StepError, Symmetric, Tally, depends_on_length, n_parts};
+use crate::memory::{Memory, memory};
 
 /// The one-step map of a [`Rescued`] scheme; what [`Symmetric::rescued`] says of it holds here.
 pub struct AssembledRescued<M> {
@@ -28,7 +29,7 @@ impl<B: AssembledScheme + Symmetric, const K: usize> AssembledScheme for Rescued
         let part = |index| base.with_step_size(base.step_size() / n_parts(index) as f64);
         let whole = base.prepare(scene)?;
         let parts = (0..K).map(|index| part(index).prepare(scene)).collect::<Result<_, _>>()?;
-        let before = AssembledState::blank(scene.assembly.n_coordinates);
+        let before = scene.blank_state();
         Ok(AssembledRescued { whole, parts, before, rescues: Rescues::default() })
     }
 }
@@ -92,3 +93,9 @@ impl<M: AssembledStep> AssembledRescued<M> {
         Err(error)
     }
 }
+
+// Maps of parts have forgotten what they knew when they are asked again, and the state before a step is overwritten by the next one.
+memory!([M: Memory] AssembledRescued<M>, |words| Self { whole, parts: _, before: _, rescues } => {
+    words.part(whole);
+    words.part(rescues);
+});

@@ -10,12 +10,12 @@ use crate::mechanics::{norm, relative};
 ///
 /// A step that fails leaves the run at the last state that was reached. Nothing is allocated under a step.
 pub struct AssembledRun<S, M, T = Fallbacks> {
-    system: S,
-    scene: PreparedScene,
-    map: M,
-    state: AssembledState,
-    steps: u64,
-    tally: T,
+    pub(super) system: S,
+    pub(super) scene: PreparedScene,
+    pub(super) map: M,
+    pub(super) state: AssembledState,
+    pub(super) steps: u64,
+    pub(super) tally: T,
 }
 
 impl<S: AssembledSystem, M: AssembledStep> AssembledRun<S, M> {
@@ -72,7 +72,7 @@ impl<S: AssembledSystem, M: AssembledStep, T: Tally> AssembledRun<S, M, T> {
     /// # Errors
     /// [`StepError`]; the run then stands at the last state that was reached.
     pub fn advance_to(&mut self, t: f64) -> Result<&AssembledState, StepError> {
-        for _ in 0..steps_between(self.state.t, t, self.map.h())? {
+        for _ in 0..self.steps_to(t)? {
             self.advance()?;
         }
         Ok(&self.state)
@@ -88,13 +88,38 @@ impl<S: AssembledSystem, M: AssembledStep, T: Tally> AssembledRun<S, M, T> {
         steps: u64,
         mut see: impl FnMut(&Self) -> Result<(), E>,
     ) -> Result<&AssembledState, E> {
-        for _ in 0..steps_between(self.state.t, t, self.map.h())? {
+        for _ in 0..self.steps_to(t)? {
             self.advance()?;
             if self.steps.is_multiple_of(steps) {
                 see(self)?;
             }
         }
         Ok(&self.state)
+    }
+
+    /// Number of steps that lead nearest to `t`: what an [`advance_to`](Self::advance_to) takes.
+    ///
+    /// # Errors
+    /// [`StepError`] for a time that steps do not lead to.
+    pub fn steps_to(&self, t: f64) -> Result<u64, StepError> {
+        steps_between(self.state.t, t, self.map.h())
+    }
+
+    /// Sets the inputs of the steps to come, in the order of [`INPUTS`](AssembledSystem::INPUTS); they are constant over a step, and zero at the start.
+    ///
+    /// # Panics
+    /// If these are not as many as the scene has.
+    pub fn set_inputs(&mut self, inputs: &[f64]) {
+        self.state.inputs.copy_from_slice(inputs);
+        self.scene.set_inputs(inputs);
+    }
+
+    /// The observed quantities of the state reached, in the order of [`OBSERVABLES`](AssembledSystem::OBSERVABLES).
+    pub fn observe(&self) -> Vec<f64> {
+        let AssembledState { t, q, v, inputs, .. } = &self.state;
+        let mut quantities = vec![0.0; S::OBSERVABLES.len()];
+        self.scene.assembly.observe(Point { t: *t, q, v }, inputs, &mut quantities);
+        quantities
     }
 
     /// Energy `H = v · ∂L/∂v − L` of the state reached.
@@ -104,16 +129,26 @@ impl<S: AssembledSystem, M: AssembledStep, T: Tally> AssembledRun<S, M, T> {
 
     /// The largest constraint residual `|φ(t, q)|` of the state reached, in the units of the constraints as written.
     pub fn constraint_error(&self) -> f64 {
+        crate::linear::largest_magnitude(self.constraint_residual())
+    }
+
+    /// `φ(t, q)` of the state reached.
+    pub(crate) fn constraint_residual(&self) -> Vec<f64> {
         let assembly = &self.scene.assembly;
         let mut values = vec![0.0; assembly.n_constraints];
         assembly.constraints(self.state.t, &self.state.q, &mut values);
-        crate::linear::largest_magnitude(values)
+        values
     }
 
     /// The largest residual of the hidden constraints, `|G v + ∂φ/∂t| / (‖G‖ ‖v‖ + |∂φ/∂t|)`, without unit; 0 at rest.
     pub fn hidden_constraint_error(&self) -> f64 {
+        crate::linear::largest_magnitude(self.hidden_constraint_residual())
+    }
+
+    /// `|G v + ∂φ/∂t| / (‖G‖ ‖v‖ + |∂φ/∂t|)` of every constraint at the state reached.
+    pub(crate) fn hidden_constraint_residual(&self) -> Vec<f64> {
         let AssembledState { t, q, v, .. } = &self.state;
-        crate::linear::largest_magnitude(hidden_residuals(&self.scene.assembly, *t, q, v))
+        hidden_residuals(&self.scene.assembly, *t, q, v)
     }
 }
 

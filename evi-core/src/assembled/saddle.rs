@@ -4,7 +4,7 @@ use super::assembly::{Assembly, ConstraintsAt, Point};
 use super::elements::{SecondWeights, for_each_second_derivative};
 #[cfg(feature = "sparse")]
 use super::sparse::Pivoted;
-use super::sparse::{Elimination, General, TooMuchFill};
+use super::sparse::{Effort, Elimination, General, TooMuchFill};
 use crate::linear::SingularMatrix;
 
 /// The matrix, and where everything goes that is added to it.
@@ -65,6 +65,14 @@ impl Saddle {
     /// # Errors
     /// [`TooMuchFill`].
     pub(super) fn new(assembly: &Assembly) -> Result<Self, TooMuchFill> {
+        Self::by(assembly, |sizes, coupled| SaddleMatrix::new(sizes, coupled.iter().copied()))
+    }
+
+    /// With the matrix that `matrix` makes for numbers of coordinates and unknowns, and what is coupled.
+    fn by(
+        assembly: &Assembly,
+        matrix: impl FnOnce((usize, usize), &[(usize, usize)]) -> Result<SaddleMatrix, TooMuchFill>,
+    ) -> Result<Self, TooMuchFill> {
         let n = assembly.n_coordinates;
         let mut coupled: Vec<Vec<(usize, usize)>> = Vec::new();
         for family in &assembly.families {
@@ -79,12 +87,23 @@ impl Saddle {
         }
         let slots: Vec<(usize, usize)> =
             assembly.slots.iter().map(|slot| (n + slot.row as usize, slot.col as usize)).collect();
-        let all = coupled.iter().flatten().chain(&slots).copied();
-        let matrix = SaddleMatrix::new((n, n + assembly.n_constraints), all)?;
+        let all: Vec<(usize, usize)> = coupled.iter().flatten().chain(&slots).copied().collect();
+        let matrix = matrix((n, n + assembly.n_constraints), &all)?;
         let place = |&(row, col): &(usize, usize)| matrix.place(row, col);
         let second_derivatives = coupled.iter().map(|pairs| pairs.iter().map(place).collect()).collect();
         let slopes = slots.iter().map(|&(row, col)| [place(&(row, col)), place(&(col, row))]).collect();
         Ok(Self { matrix, second_derivatives, slopes })
+    }
+
+    /// What a factorisation takes.
+    pub(super) fn effort(&self) -> Effort {
+        match &self.matrix {
+            SaddleMatrix::Ordered(elimination, _) => elimination.effort(),
+            #[cfg(feature = "sparse")]
+            SaddleMatrix::Pivoted(matrix) => {
+                Effort { unknowns: matrix.n_unknowns(), below: 0, products: 0, is_pivoted: true }
+            }
+        }
     }
 
     /// Overwrites the matrix with zero.
@@ -133,5 +152,56 @@ impl Saddle {
             #[cfg(feature = "sparse")]
             SaddleMatrix::Pivoted(matrix) => matrix.solve(rhs),
         }
+    }
+}
+
+#[cfg(all(test, feature = "sparse"))]
+mod tests {
+    use super::super::AssembledSimulation;
+    use super::super::sparse::{Pivoted, TooMuchFill};
+    use super::{Saddle, SaddleMatrix};
+    use crate::prelude::*;
+
+    const N: usize = 20;
+
+    /// A net of rods along its rows and springs along its columns, hung up along its first column.
+    #[derive(MechanicalSystem, Clone)]
+    #[evi(
+        coordinates(p: [N, N, 3]),
+        kinetic = sum(0..N, |i| sum(0..N, |j| 0.5 * m * (1 + 0.02 * j) * der(p[i][j]).norm_squared())),
+        potential = sum(0..N, |i| sum(0..N, |j| m * g * p[i][j][2]))
+            + sum(1..N, |i| sum(0..N, |j| 0.25 * k * ((p[i][j] - p[i - 1][j]).norm_squared() - l.powi(2)).powi(2))),
+        constraint(hung[i in 0..N]: p[i][0] == [0.0, l * i, 0.0]),
+        constraint(rod[i in 0..N, j in 1..N]: (p[i][j] - p[i][j - 1]).norm_squared() == l.powi(2)),
+    )]
+    struct Net {
+        m: f64,
+        g: f64,
+        k: f64,
+        l: f64,
+    }
+
+    #[test]
+    fn a_run_by_faer_is_the_run_by_the_elimination_in_a_fixed_order() {
+        let (net, l) = (Net { m: 0.01, g: 9.81, k: 400.0, l: 0.05 }, 0.05);
+        let q: Vec<f64> = (0..N * N).flat_map(|k| [l * (k % N) as f64, l * (k / N) as f64, 0.0]).collect();
+        let simulation = AssembledSimulation::new(net, Evi::midpoint(1e-3));
+        let start = || simulation.start(q.clone(), vec![0.0; 3 * N * N]).expect("a start");
+        let (mut ordered, mut pivoted) = (start(), start());
+        let by_faer = |(_, n_unknowns): (usize, usize), coupled: &[(usize, usize)]| {
+            let matrix = Pivoted::new(n_unknowns, coupled.iter().copied());
+            matrix.map(Box::new).map(SaddleMatrix::Pivoted).ok_or(TooMuchFill { products: 0, most: 0 })
+        };
+        pivoted.scene.saddle = Some(Saddle::by(&pivoted.scene.assembly, by_faer).expect("memory"));
+        assert!(pivoted.report().systems.iter().any(|(_, effort)| effort.is_pivoted));
+        for _ in 0..20 {
+            ordered.advance().expect("a step");
+            pivoted.advance().expect("a step");
+        }
+        let apart = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
+        let difference = apart(ordered.state().q(), pivoted.state().q());
+        println!("{difference:e}, moved {}", apart(ordered.state().q(), &q));
+        assert!(apart(ordered.state().q(), &q) > 1e-3, "it moves");
+        assert!(difference < 1e-14 && pivoted.constraint_error() < 1e-15, "{difference:e}");
     }
 }

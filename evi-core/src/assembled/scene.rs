@@ -1,12 +1,14 @@
 //! A scene made ready for its steps: what is constant over a run, and storage for what is not.
 
 use super::assembly::{Assembly, ConstraintsAt, Point};
+use super::galerkin::PointMatrix;
 use super::gram::Gram;
 use super::mass::{ConstantMass, check_inertia, mass_matrix};
 use super::saddle::Saddle;
 use super::sparse::TooMuchFill;
 use super::{AssembledState, AssembledSystem, AssemblyError};
 use crate::integrator::StepError;
+use crate::memory::memory;
 
 /// A scene, prepared for runs: its elements, the orders of its eliminations, and the storage of its steps. Stages of a composition share it.
 pub struct PreparedScene {
@@ -15,7 +17,10 @@ pub struct PreparedScene {
     pub(super) inertia: Option<ConstantInertia>,
     /// Positions and multipliers together, where steps need it.
     pub(super) saddle: Option<Saddle>,
+    /// All points of a Galerkin step together, where there are such steps and the matrix is not too large.
+    pub(super) points: Option<PointMatrix>,
     pub(super) space: Space,
+    n_inputs: usize,
 }
 
 /// A mass matrix that is constant and of small blocks: with it multipliers are found alone.
@@ -49,6 +54,16 @@ pub(super) struct Space {
     /// Whether what is kept of the start belongs to the state that the next step begins from.
     pub(super) is_start_known: bool,
 }
+
+// What is known of the start of the next step is found by the last one, at a time that is rounded otherwise where a composition begins; the rest is written
+// anew in every step.
+memory!([] PreparedScene, |words| Self { assembly: _, inertia: _, saddle: _, points: _, space, n_inputs: _ } => {
+    let Space { at_start, force_at_start, force_at_end, is_start_known, .. } = space;
+    words.part(at_start);
+    words.slice(force_at_start);
+    words.slice(force_at_end);
+    words.flag(is_start_known);
+});
 
 impl Space {
     fn of(assembly: &Assembly) -> Self {
@@ -90,7 +105,25 @@ impl PreparedScene {
             Some(_) => None,
             None => Some(Saddle::new(&assembly).map_err(|fill| too_much(&assembly, fill))?),
         };
-        Ok(Self { space: Space::of(&assembly), assembly, inertia, saddle })
+        Ok(Self {
+            space: Space::of(&assembly),
+            assembly,
+            inertia,
+            saddle,
+            points: None,
+            n_inputs: S::INPUTS.len(),
+        })
+    }
+
+    /// A state of zeros, for numbers to come.
+    pub(super) fn blank_state(&self) -> AssembledState {
+        AssembledState::blank(self.assembly.n_coordinates, self.n_inputs)
+    }
+
+    /// Sets what forces take from the caller: what is known of the start of a step is known no more.
+    pub(super) fn set_inputs(&mut self, inputs: &[f64]) {
+        self.assembly.set_inputs(inputs);
+        self.space.is_start_known = false;
     }
 
     /// Makes sure that there is a saddle-point matrix.
@@ -100,6 +133,13 @@ impl PreparedScene {
             self.saddle = Some(saddle);
         }
         Ok(())
+    }
+
+    /// Makes sure that there is a matrix over all points of steps with so many intervals, if it is not too large.
+    pub(super) fn prepare_points(&mut self, intervals: usize) {
+        if self.points.as_ref().is_none_or(|points| !points.is_for(intervals)) {
+            self.points = PointMatrix::new(&self.assembly, intervals);
+        }
     }
 
     /// Overwrites the state with the end of the step that has been found, if every number of it is finite.
@@ -121,6 +161,13 @@ impl PreparedScene {
         std::mem::swap(&mut space.force_at_start, &mut space.force_at_end);
         space.is_start_known = true;
         Ok(())
+    }
+}
+
+impl PreparedScene {
+    /// The error of a scene whose elimination takes too much.
+    pub(super) fn too_much(&self, fill: TooMuchFill) -> AssemblyError {
+        too_much(&self.assembly, fill)
     }
 }
 

@@ -5,6 +5,7 @@ use super::kicked::KickedStep;
 use super::nodes::Nodes;
 use super::{AssembledState, AssemblyError, PreparedScene};
 use crate::integrator::{Composed, Evi, StepError, Symmetric, Tally};
+use crate::memory::{Memory, memory};
 use crate::scheme::checked_step_size;
 
 /// A scheme that integrates assembled scenes: [`Evi`] on straight curves, [`Galerkin`](crate::integrator::Galerkin) on polynomials, their symmetric
@@ -21,7 +22,7 @@ pub trait AssembledScheme {
 }
 
 /// A map from the state at `t` to the state at `t + h`.
-pub trait AssembledStep {
+pub trait AssembledStep: Memory {
     /// Step size; negative for a map that goes back in time.
     fn h(&self) -> f64;
 
@@ -96,6 +97,15 @@ impl AssembledStep for AssembledEvi {
     }
 }
 
+memory!([] AssembledEvi, |words| Self { h, kind } => {
+    words.fixed(*h);
+    // Which of them follows from the scene and the nodes.
+    match kind {
+        Kind::Kicked(step) => words.part(step),
+        Kind::Implicit(step) => words.part(step),
+    }
+});
+
 /// The one-step map of a composition.
 pub struct AssembledComposed<M> {
     /// The maps of the stages, each with the time from the start of the step to its own.
@@ -115,7 +125,7 @@ impl<B: AssembledScheme + Symmetric, const N: usize> AssembledScheme for Compose
         for (stage, start) in self.stages() {
             stages.push((start * h, stage.prepare(scene)?));
         }
-        Ok(AssembledComposed { stages, h, before: AssembledState::blank(scene.assembly.n_coordinates) })
+        Ok(AssembledComposed { stages, h, before: scene.blank_state() })
     }
 }
 
@@ -149,3 +159,12 @@ impl<M: AssembledStep> AssembledStep for AssembledComposed<M> {
         Ok(())
     }
 }
+
+// The state before a step is overwritten by the next one.
+memory!([M: Memory] AssembledComposed<M>, |words| Self { stages, h, before: _ } => {
+    words.fixed(*h);
+    for (start, stage) in stages {
+        words.fixed(*start);
+        words.part(stage);
+    }
+});

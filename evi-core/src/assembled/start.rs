@@ -156,6 +156,7 @@ impl<S: AssembledSystem + Clone, F: AssembledScheme> AssembledSimulation<S, F> {
         scene.project(t, &mut ())?;
         let (v, p) = (scene.space.v.clone(), scene.space.p.clone());
         self.refuse_what_is_not_finite(&[("velocity", &v), ("momentum", &p)])?;
-        Ok(AssembledState { t, q, v, p })
+        let inputs = vec![0.0; S::INPUTS.len()];
+        Ok(AssembledState { t, q, v, p, inputs })
     }
 }

@@ -7,6 +7,7 @@
 //! An element is an ordinary small scene with local coordinates and its own parameters; a family is an element, how often it is repeated, and
 //! where the coordinates of each copy lie among those of the scene. Numbers of bodies are known when a run is prepared.
 
+use super::report::AssembledReport;
 use crate::system::MechanicalSystem;
 
 /// A scene that is a sum of repeated elements.
@@ -19,6 +20,15 @@ use crate::system::MechanicalSystem;
     note = "one with a size that is a constant's name derives `AssembledSystem` by `#[derive(MechanicalSystem)]`"
 )]
 pub trait AssembledSystem: Sized {
+    /// Names of the inputs, which the caller of a run sets; elements have all of them or none.
+    const INPUTS: &'static [&'static str] = &[];
+
+    /// Names of the observed quantities.
+    const OBSERVABLES: &'static [&'static str] = &[];
+
+    /// Equations and families as text and data.
+    const REPORT: AssembledReport = AssembledReport::UNKNOWN;
+
     /// Number of coordinates, `n`.
     fn n_coordinates(&self) -> usize;
 
@@ -34,6 +44,12 @@ pub trait AssembledSystem: Sized {
 
     /// Shows every family to the visitor, by `visitor.family::<F>()`, in the order of declaration.
     fn visit_families<V: FamilyVisitor<Self>>(&self, visitor: &mut V);
+
+    /// Shows the terms of every observed quantity to the visitor, by `visitor.term::<F>(quantity)`: families of which each element adds its own observed
+    /// quantities.
+    fn visit_observed<V: ObservedVisitor<Self>>(&self, visitor: &mut V) {
+        let _ = visitor;
+    }
 }
 
 /// A repeated element of a scene `S`.
@@ -41,7 +57,7 @@ pub trait AssembledSystem: Sized {
 /// A term without an index is a family of one element; a family by two indices numbers its pairs. What a run needs of this is asked once, when it is
 /// prepared.
 pub trait Family<S> {
-    /// What is repeated. Elements have no inputs, and no coordinate of theirs needs inertia where other elements give it some.
+    /// What is repeated. No coordinate of theirs needs inertia where other elements give it some.
     type Element: MechanicalSystem + 'static;
 
     /// Number of elements.
@@ -59,4 +75,10 @@ pub trait Family<S> {
 pub trait FamilyVisitor<S> {
     /// Sees the next one.
     fn family<F: Family<S>>(&mut self);
+}
+
+/// Sees the terms of the observed quantities of a scene.
+pub trait ObservedVisitor<S> {
+    /// Sees the next one, and which quantity of [`OBSERVABLES`](AssembledSystem::OBSERVABLES) it is a term of.
+    fn term<F: Family<S>>(&mut self, quantity: usize);
 }

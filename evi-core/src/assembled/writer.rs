@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use super::{AssembledRun, AssembledStep, AssembledSystem};
 use crate::integrator::Tally;
 
-/// Writes time, energy, and positions and velocities of some coordinates, a row per state. Numbers are written with as many digits as it takes to
+/// Writes time, energy, observed quantities, and positions and velocities of some coordinates, a row per state. Numbers are written with as many digits as it takes to
 /// read the same bits again.
 ///
 /// ```
@@ -75,6 +75,9 @@ impl<W: Write> StateWriter<W> {
             return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
         }
         write!(out, "t,energy")?;
+        for name in S::OBSERVABLES {
+            write!(out, ",{}", quoted((*name).to_owned()))?;
+        }
         let name = |index: &usize| run.system().coordinate_name(*index);
         for name in coordinates.iter().map(name) {
             write!(out, ",{}", quoted(name))?;
@@ -98,6 +101,9 @@ impl<W: Write> StateWriter<W> {
     {
         let state = run.state();
         write!(self.out, "{},{}", state.t(), run.energy())?;
+        for value in run.observe() {
+            write!(self.out, ",{value}")?;
+        }
         for values in [state.q(), state.v()] {
             for &index in &self.coordinates {
                 write!(self.out, ",{}", values[index])?;

@@ -32,6 +32,8 @@ pub(crate) use crate::mechanics::CONSISTENCY;
 pub use crate::newton::{Diagnostics, Fallbacks, Statistics, Tally, Worst};
 #[cfg(feature = "std")]
 pub use checkpoint::{Checkpoint, ResumeError};
+#[cfg(feature = "std")]
+pub(crate) use checkpoint::{Fingerprint, recall, recorded, without_paths};
 pub use compensated::{Compensable, CompensableStep, Compensated, CompensatedStep};
 pub use composition::{Composed, ComposedStep, Composition, Symmetric};
 pub use evi::{Evi, EviStep};

@@ -201,33 +201,58 @@ impl<S: MechanicalSystem> Mechanics<S> {
         t: f64,
         q: &S::PerCoordinate<f64>,
         multipliers: &S::PerConstraint<f64>,
-        mut add: impl FnMut(usize, usize, f64),
+        add: impl FnMut(usize, usize, f64),
     ) {
-        if S::N_CONSTRAINTS == 0 {
-            return;
+        for_each_constraint_curvature::<S>(&self.constants, (t, q), multipliers, add);
+    }
+}
+
+/// Calls `add(row, col, value)` for every entry of `Σ μ φ_qq`, the second derivative of `μᵀφ`, of a scene with these constants: for the pairs of
+/// [`for_each_curved_pair`], in their order.
+pub(crate) fn for_each_constraint_curvature<S: MechanicalSystem>(
+    constants: &S::PerConstant<f64>,
+    (t, q): (f64, &S::PerCoordinate<f64>),
+    multipliers: &S::PerConstraint<f64>,
+    mut add: impl FnMut(usize, usize, f64),
+) {
+    if S::N_CONSTRAINTS == 0 {
+        return;
+    }
+    let curvature = |direction| S::constraint_curvature(constants, t, q, &direction);
+    let unit = |i: usize, j: usize| if i == j { 1.0 } else { 0.0 };
+    let at_rest = curvature(Array::from_fn(|_| 0.0));
+    let along: Directions<S> = {
+        let columns = S::PerCoordinate::<S::PerConstraint<f64>>::from_fn(|col| {
+            curvature(Array::from_fn(|i| unit(i, col)))
+        });
+        Array::from_fn(|c| Array::from_fn(|col| columns[col][c]))
+    };
+    for row in 0..S::N_COORDINATES {
+        let curves = curved_with::<S>(row);
+        for col in (0..=row).filter(|&col| curves[col]) {
+            // γ is a quadratic polynomial of the velocity: γ(a + b) − γ(a) − γ(b) + γ(0) leaves twice its
+            // bilinear form, without the terms of time. Constraint by constraint, so that small whole numbers
+            // cancel exactly.
+            let along_both = curvature(Array::from_fn(|i| unit(i, row) + unit(i, col)));
+            let bilinear = |c: usize| along_both[c] - (along[c][row] + along[c][col]) + at_rest[c];
+            let value = (0..S::N_CONSTRAINTS).map(|c| 0.5 * multipliers[c] * bilinear(c)).sum();
+            add(row, col, value);
+            if row != col {
+                add(col, row, value);
+            }
         }
-        let curvature = |direction| S::constraint_curvature(&self.constants, t, q, &direction);
-        let unit = |i: usize, j: usize| if i == j { 1.0 } else { 0.0 };
-        let at_rest = curvature(Array::from_fn(|_| 0.0));
-        let along: Directions<S> = {
-            let columns = S::PerCoordinate::<S::PerConstraint<f64>>::from_fn(|col| {
-                curvature(Array::from_fn(|i| unit(i, col)))
-            });
-            Array::from_fn(|c| Array::from_fn(|col| columns[col][c]))
-        };
-        for row in 0..S::N_COORDINATES {
-            let curves = curved_with::<S>(row);
-            for col in (0..=row).filter(|&col| curves[col]) {
-                // γ is a quadratic polynomial of the velocity: γ(a + b) − γ(a) − γ(b) + γ(0) leaves twice its
-                // bilinear form, without the terms of time. Constraint by constraint, so that small whole numbers
-                // cancel exactly.
-                let along_both = curvature(Array::from_fn(|i| unit(i, row) + unit(i, col)));
-                let bilinear = |c: usize| along_both[c] - (along[c][row] + along[c][col]) + at_rest[c];
-                let value = (0..S::N_CONSTRAINTS).map(|c| 0.5 * multipliers[c] * bilinear(c)).sum();
-                add(row, col, value);
-                if row != col {
-                    add(col, row, value);
-                }
+    }
+}
+
+/// Calls `visit(row, col)` for every entry that `Σ μ φ_qq` can have.
+#[cfg(feature = "std")]
+pub(crate) fn for_each_curved_pair<S: MechanicalSystem>(mut visit: impl FnMut(usize, usize)) {
+    for row in 0..S::N_COORDINATES {
+        let curves = curved_with::<S>(row);
+        for col in (0..=row).filter(|&col| curves[col]) {
+            visit(row, col);
+            if row != col {
+                visit(col, row);
             }
         }
     }

@@ -40,6 +40,8 @@ mod step_equations;
 pub(crate) use constraint_rank::CONSISTENCY;
 pub use constraint_rank::{ConstraintRank, ConstraintSet};
 pub(crate) use constraints::{Directions, NOTHING};
+#[cfg(feature = "std")]
+pub(crate) use constraints::{for_each_constraint_curvature, for_each_curved_pair};
 pub(crate) use coordinate_matrix::{CoordinateMatrix, Rows};
 pub(crate) use coupling::{AsMass, AsScene, Coupling, Full};
 pub(crate) use folded_step::FoldedStep;
@@ -52,7 +54,7 @@ pub(crate) use implicit_step::{ImplicitStep, StepSolution, StepStart};
 pub(crate) use impulse_step::ImpulseStep;
 pub(crate) use kick_drift_kick::KickDriftKick;
 #[cfg(feature = "std")]
-pub(crate) use lane_step::{FirstGuess, LaneEnd, LaneStep, Passes, product, reach};
+pub(crate) use lane_step::{FirstGuess, LaneEnd, LaneStep, Passes, product, product_of_stored, reach};
 pub(crate) use leapfrog_step::LeapfrogStep;
 pub(crate) use legendre::ConstantLegendre;
 #[cfg(feature = "std")]

@@ -99,6 +99,16 @@ impl<'a> Record<'a> {
         lanes.as_ref().iter().for_each(|lanes| self.numbers(&lanes.to_array()));
     }
 
+    /// Numbers of which the map knows how many they are.
+    pub fn slice(&mut self, numbers: &[f64]) {
+        numbers.iter().for_each(|number| self.number(number));
+    }
+
+    /// The same, several side by side.
+    pub fn lane_slice(&mut self, lanes: &[Lanes]) {
+        lanes.iter().for_each(|lanes| self.numbers(&lanes.to_array()));
+    }
+
     /// Yes or no.
     pub fn flag(&mut self, flag: &bool) {
         (self.sink)(u64::from(*flag));
@@ -165,6 +175,20 @@ impl<'a> Recall<'a> {
         }
     }
 
+    /// Numbers of which the map knows how many they are.
+    pub fn slice(&mut self, numbers: &mut [f64]) {
+        numbers.iter_mut().for_each(|number| self.number(number));
+    }
+
+    /// The same, several side by side.
+    pub fn lane_slice(&mut self, lanes: &mut [Lanes]) {
+        for lanes in lanes {
+            let mut numbers = [0.0; LANES];
+            self.numbers(&mut numbers);
+            *lanes = Lanes::new(numbers);
+        }
+    }
+
     /// Yes or no.
     pub fn flag(&mut self, flag: &mut bool) {
         *flag = (self.source)() != 0;
@@ -206,6 +230,18 @@ impl Memory for () {
     fn record(&self, _words: &mut Record<'_>) {}
 
     fn recall(&mut self, _words: &mut Recall<'_>) {}
+}
+
+/// What is kept on the heap.
+#[cfg(feature = "std")]
+impl<M: Memory> Memory for std::boxed::Box<M> {
+    fn record(&self, words: &mut Record<'_>) {
+        (**self).record(words);
+    }
+
+    fn recall(&mut self, words: &mut Recall<'_>) {
+        (**self).recall(words);
+    }
 }
 
 /// Several vectors.

@@ -4,6 +4,8 @@
 //! no `std`.
 
 #[cfg(feature = "std")]
+mod assembled;
+#[cfg(feature = "std")]
 mod drift;
 mod matrix;
 mod system;

@@ -4,7 +4,7 @@ use core::fmt::{self, Display, Formatter};
 
 use super::matrix::write_matrix;
 use super::words::{LISTED_NAMES, List, write_structure};
-use crate::system::{KernelReport, SystemReport};
+use crate::system::{Equation, KernelReport, SystemReport};
 
 impl Display for SystemReport {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
@@ -20,15 +20,7 @@ impl Display for SystemReport {
             writeln!(f, "  observed     {}", List(|| self.observables.iter(), LISTED_NAMES))?;
         }
 
-        writeln!(f, "\nEquations")?;
-        let margin = self.equations.iter().map(|equation| equation.name.chars().count()).max().unwrap_or(0);
-        let margin = if margin == 0 { 0 } else { margin + 2 };
-        for equation in self.equations {
-            let colon = if equation.name.is_empty() { "" } else { ":" };
-            let width = margin.saturating_sub(equation.name.chars().count() + colon.len());
-            let (left, right) = (equation.left.unicode, equation.right.unicode);
-            writeln!(f, "  {}{colon}{:width$}{left} = {right}", equation.name, "")?;
-        }
+        write_equations(self.equations, f)?;
 
         writeln!(f, "\nStructure")?;
         write_structure(self, f)?;
@@ -51,6 +43,20 @@ impl Display for SystemReport {
         }
         write_warnings(self, f)
     }
+}
+
+/// Writes the equations, their left sides under each other.
+pub(super) fn write_equations(equations: &[Equation], f: &mut Formatter<'_>) -> fmt::Result {
+    writeln!(f, "\nEquations")?;
+    let margin = equations.iter().map(|equation| equation.name.chars().count()).max().unwrap_or(0);
+    let margin = if margin == 0 { 0 } else { margin + 2 };
+    for equation in equations {
+        let colon = if equation.name.is_empty() { "" } else { ":" };
+        let width = margin.saturating_sub(equation.name.chars().count() + colon.len());
+        let (left, right) = (equation.left.unicode, equation.right.unicode);
+        writeln!(f, "  {}{colon}{:width$}{left} = {right}", equation.name, "")?;
+    }
+    Ok(())
 }
 
 fn write_unknowns(report: &SystemReport, f: &mut Formatter<'_>) -> fmt::Result {

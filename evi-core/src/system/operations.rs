@@ -3,19 +3,19 @@
 /// Operations of each emitted kernel.
 #[derive(Clone, Copy, Debug)]
 pub struct KernelOperations {
-    /// [`MechanicalSystem::constants`].
+    /// [`MechanicalSystem::constants`](super::MechanicalSystem::constants).
     pub constants: Operations,
-    /// [`MechanicalSystem::lagrangian`].
+    /// [`MechanicalSystem::lagrangian`](super::MechanicalSystem::lagrangian).
     pub lagrangian: Operations,
-    /// [`MechanicalSystem::lagrangian_gradient`].
+    /// [`MechanicalSystem::lagrangian_gradient`](super::MechanicalSystem::lagrangian_gradient).
     pub lagrangian_gradient: Operations,
-    /// [`MechanicalSystem::lagrangian_derivatives`].
+    /// [`MechanicalSystem::lagrangian_derivatives`](super::MechanicalSystem::lagrangian_derivatives).
     pub lagrangian_derivatives: Operations,
-    /// [`MechanicalSystem::constraints`].
+    /// [`MechanicalSystem::constraints`](super::MechanicalSystem::constraints).
     pub constraints: Operations,
-    /// [`MechanicalSystem::constraint_derivatives`].
+    /// [`MechanicalSystem::constraint_derivatives`](super::MechanicalSystem::constraint_derivatives).
     pub constraint_derivatives: Operations,
-    /// [`MechanicalSystem::constraint_curvature`].
+    /// [`MechanicalSystem::constraint_curvature`](super::MechanicalSystem::constraint_curvature).
     pub constraint_curvature: Operations,
 }
 

@@ -3,10 +3,8 @@
 use core::convert::Infallible;
 use core::ops::ControlFlow;
 
-use super::Observer;
-use crate::integrator::{OneStep, Run, Tally};
+use super::{Observer, Watched};
 use crate::report::Drift;
-use crate::system::MechanicalSystem;
 
 /// Means of the energy over blocks of equal length, of a run of any length in storage of one size: where all blocks are full, neighbours become
 /// one, and blocks are twice as long from there on.
@@ -47,9 +45,9 @@ impl EnergyDrift {
     pub const MOST_BLOCKS: usize = 128;
 
     /// Nothing seen yet, of a run from where it stands.
-    pub fn of<S: MechanicalSystem, M: OneStep<S>, T: Tally>(run: &Run<S, M, T>) -> Self {
+    pub fn of<R: Watched>(run: &R) -> Self {
         Self {
-            start_energy: run.energy(),
+            start_energy: run.total_energy(),
             means: [0.0; Self::MOST_BLOCKS],
             blocks: 0,
             length: 1,
@@ -101,12 +99,12 @@ impl EnergyDrift {
     }
 }
 
-impl<S: MechanicalSystem, M: OneStep<S>, T: Tally> Observer<S, M, T> for EnergyDrift {
+impl<R: Watched> Observer<R> for EnergyDrift {
     type Reason = Infallible;
 
     #[inline]
-    fn see(&mut self, run: &Run<S, M, T>) -> ControlFlow<Infallible> {
-        self.add(run.energy() - self.start_energy);
+    fn see(&mut self, run: &R) -> ControlFlow<Infallible> {
+        self.add(run.total_energy() - self.start_energy);
         ControlFlow::Continue(())
     }
 }

@@ -4,9 +4,8 @@ use core::ops::ControlFlow;
 #[cfg(feature = "std")]
 use std::time::{Duration, Instant};
 
-use super::Observer;
-use crate::integrator::{OneStep, Run, Tally};
-use crate::system::MechanicalSystem;
+use super::watched::is_within;
+use super::{Observer, Watched};
 
 /// Stops a run that leaves its budgets. One that is not set costs nothing.
 ///
@@ -40,10 +39,11 @@ pub struct Limits {
     wall_time: Option<Duration>,
 }
 
-/// Which budget a run has left, and by how much. The run stands at the state that these numbers belong to.
+/// Which budget a run has left, and by how much. The run stands at the state that these numbers belong to. Constraints of scenes of many bodies have
+/// names that are put together: `Stopped<String>`.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-pub enum Stopped {
+pub enum Stopped<N = &'static str> {
     /// The energy has changed by more than its budget.
     #[error("at t = {t:?} the energy has changed by {change:e}, its budget is {budget:e}")]
     Energy {
@@ -60,7 +60,7 @@ pub enum Stopped {
         /// Time of the state.
         t: f64,
         /// Name of the constraint.
-        constraint: &'static str,
+        constraint: N,
         /// `φ`, in the units of the constraint as written.
         residual: f64,
         /// The largest magnitude that passes.
@@ -75,7 +75,7 @@ pub enum Stopped {
         /// Time of the state.
         t: f64,
         /// Name of the constraint.
-        constraint: &'static str,
+        constraint: N,
         /// `|G v + ∂φ/∂t| / (‖G‖ ‖v‖ + |∂φ/∂t|)`.
         residual: f64,
         /// The largest that passes.
@@ -100,10 +100,10 @@ pub enum Stopped {
 
 impl Limits {
     /// No limits yet, for a run from where it stands: its energy is the one that changes are counted from, and time runs from now.
-    pub fn of<S: MechanicalSystem, M: OneStep<S>, T: Tally>(run: &Run<S, M, T>) -> Self {
+    pub fn of<R: Watched>(run: &R) -> Self {
         Self {
-            start_energy: run.energy(),
-            start_steps: run.steps(),
+            start_energy: run.total_energy(),
+            start_steps: run.n_steps(),
             energy: None,
             constraint: None,
             hidden_constraint: None,
@@ -156,28 +156,26 @@ impl Limits {
     }
 
     /// What the run has left, if anything.
-    fn left<S: MechanicalSystem, M: OneStep<S>, T: Tally>(&self, run: &Run<S, M, T>) -> Option<Stopped> {
-        let t = run.state().t();
+    fn left<R: Watched>(&self, run: &R) -> Option<Stopped<R::Name>> {
+        let t = run.time();
         if let Some(budget) = self.energy {
-            let change = run.energy() - self.start_energy;
+            let change = run.total_energy() - self.start_energy;
             if !is_within(change, budget) {
                 return Some(Stopped::Energy { t, change, budget });
             }
         }
-        if let Some(budget) = self.constraint {
-            let residuals = run.mechanics().constraint_residual(run.state());
-            if let Some((constraint, residual)) = beyond::<S>(residuals.as_ref(), budget) {
-                return Some(Stopped::Constraint { t, constraint, residual, budget });
-            }
+        if let Some(budget) = self.constraint
+            && let Some((constraint, residual)) = run.constraint_beyond(budget)
+        {
+            return Some(Stopped::Constraint { t, constraint, residual, budget });
         }
-        if let Some(budget) = self.hidden_constraint {
-            let residuals = run.mechanics().hidden_constraint_residual(run.state());
-            if let Some((constraint, residual)) = beyond::<S>(residuals.as_ref(), budget) {
-                return Some(Stopped::HiddenConstraint { t, constraint, residual, budget });
-            }
+        if let Some(budget) = self.hidden_constraint
+            && let Some((constraint, residual)) = run.hidden_constraint_beyond(budget)
+        {
+            return Some(Stopped::HiddenConstraint { t, constraint, residual, budget });
         }
         // A run that was resumed may stand before the one that the limits were made for.
-        let steps = run.steps().saturating_sub(self.start_steps);
+        let steps = run.n_steps().saturating_sub(self.start_steps);
         if self.steps.is_some_and(|budget| steps >= budget) {
             return Some(Stopped::Steps { steps });
         }
@@ -192,22 +190,11 @@ impl Limits {
     }
 }
 
-/// Written so that a NaN is not.
-fn is_within(x: f64, budget: f64) -> bool {
-    x.abs() <= budget
-}
-
-/// The first constraint whose residual is beyond the budget.
-fn beyond<S: MechanicalSystem>(residuals: &[f64], budget: f64) -> Option<(&'static str, f64)> {
-    let c = residuals.iter().position(|residual| !is_within(*residual, budget))?;
-    Some((S::CONSTRAINTS[c], residuals[c]))
-}
-
-impl<S: MechanicalSystem, M: OneStep<S>, T: Tally> Observer<S, M, T> for Limits {
-    type Reason = Stopped;
+impl<R: Watched> Observer<R> for Limits {
+    type Reason = Stopped<R::Name>;
 
     #[inline]
-    fn see(&mut self, run: &Run<S, M, T>) -> ControlFlow<Stopped> {
+    fn see(&mut self, run: &R) -> ControlFlow<Stopped<R::Name>> {
         match self.left(run) {
             Some(stopped) => ControlFlow::Break(stopped),
             None => ControlFlow::Continue(()),

@@ -4,8 +4,11 @@
 //! type: what it does not look at is not computed, and [`Run::advance_to`] knows nothing of observers.
 
 #[cfg(feature = "std")]
+mod assembled;
+#[cfg(feature = "std")]
 mod energy_drift;
 mod limits;
+mod watched;
 
 use core::fmt;
 use core::ops::ControlFlow;
@@ -17,11 +20,13 @@ use crate::system::MechanicalSystem;
 #[cfg(feature = "std")]
 pub use energy_drift::EnergyDrift;
 pub use limits::{Limits, Stopped};
+pub use watched::Watched;
 
 /// Sees a run after every step, and may stop it.
 ///
 /// A closure is one: `|run: &Run<Pendulum, _>| ControlFlow::Continue::<()>(..)`; so is a pair of observers, of which the second sees what the
-/// first has let pass. [`every`] takes one that is to see some of the steps only.
+/// first has let pass. [`every`] takes one that is to see some of the steps only. Those that ask for no more than [`Watched`] has see runs of one body
+/// and of ten thousand alike.
 ///
 /// ```
 /// use std::convert::Infallible;
@@ -46,37 +51,28 @@ pub use limits::{Limits, Stopped};
 /// assert_eq!(run.steps(), 1500);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub trait Observer<S: MechanicalSystem, M, T> {
+pub trait Observer<R> {
     /// Why it stops a run; [`Infallible`](core::convert::Infallible) if it never does.
     type Reason;
 
     /// Sees the run after a step, at the end of that step. The run ends there if this breaks.
-    fn see(&mut self, run: &Run<S, M, T>) -> ControlFlow<Self::Reason>;
+    fn see(&mut self, run: &R) -> ControlFlow<Self::Reason>;
 }
 
-impl<S, M, T, R, F> Observer<S, M, T> for F
-where
-    S: MechanicalSystem,
-    F: FnMut(&Run<S, M, T>) -> ControlFlow<R>,
-{
-    type Reason = R;
+impl<R, X, F: FnMut(&R) -> ControlFlow<X>> Observer<R> for F {
+    type Reason = X;
 
     #[inline]
-    fn see(&mut self, run: &Run<S, M, T>) -> ControlFlow<R> {
+    fn see(&mut self, run: &R) -> ControlFlow<X> {
         self(run)
     }
 }
 
-impl<S, M, T, A, B> Observer<S, M, T> for (A, B)
-where
-    S: MechanicalSystem,
-    A: Observer<S, M, T>,
-    B: Observer<S, M, T>,
-{
+impl<R, A: Observer<R>, B: Observer<R>> Observer<R> for (A, B) {
     type Reason = Either<A::Reason, B::Reason>;
 
     #[inline]
-    fn see(&mut self, run: &Run<S, M, T>) -> ControlFlow<Self::Reason> {
+    fn see(&mut self, run: &R) -> ControlFlow<Self::Reason> {
         let (first, second) = self;
         if let ControlFlow::Break(reason) = first.see(run) {
             return ControlFlow::Break(Either::First(reason));
@@ -119,18 +115,12 @@ pub const fn every<O>(steps: u64, observer: O) -> Every<O> {
     Every { steps, observer }
 }
 
-impl<S, M, T, O> Observer<S, M, T> for Every<O>
-where
-    S: MechanicalSystem,
-    M: OneStep<S>,
-    T: Tally,
-    O: Observer<S, M, T>,
-{
+impl<R: Watched, O: Observer<R>> Observer<R> for Every<O> {
     type Reason = O::Reason;
 
     #[inline]
-    fn see(&mut self, run: &Run<S, M, T>) -> ControlFlow<O::Reason> {
-        if run.steps().is_multiple_of(self.steps) {
+    fn see(&mut self, run: &R) -> ControlFlow<O::Reason> {
+        if run.n_steps().is_multiple_of(self.steps) {
             self.observer.see(run)
         } else {
             ControlFlow::Continue(())
@@ -190,7 +180,7 @@ impl<S: MechanicalSystem, M: OneStep<S>, T: Tally> Run<S, M, T> {
     /// # Errors
     /// [`Ended::Failed`] as `advance_to` fails; the run stands before the step. [`Ended::Stopped`] with the observer's reason; the run stands at the
     /// state that the observer has seen, and can go on from there.
-    pub fn advance_observed<O: Observer<S, M, T>>(
+    pub fn advance_observed<O: Observer<Self>>(
         &mut self,
         t: f64,
         observer: &mut O,

@@ -9,10 +9,7 @@ use crate::schedule::Programs;
 
 /// `MechanicalSystem::REPORT`.
 pub(super) fn report(name: &str, written: &[WrittenEquation], programs: &Programs) -> TokenStream {
-    let equations = written.iter().map(|WrittenEquation { name, left, right }| {
-        let (left, right) = (formula(left), formula(right));
-        quote!(::evi_core::__private::Equation { name: #name, left: #left, right: #right })
-    });
+    let equations = equations(written);
     let kernels = programs.kernels().into_iter().map(|(name, program)| {
         let operations = operations(program.operations);
         let (temporaries, statements) = (program.n_temporaries(), program.n_statements());
@@ -31,11 +28,20 @@ pub(super) fn report(name: &str, written: &[WrittenEquation], programs: &Program
             parameters: Self::PARAMETERS,
             inputs: Self::INPUTS,
             observables: Self::OBSERVABLES,
-            equations: &[#(#equations),*],
+            equations: #equations,
             structure: Self::STRUCTURE,
             kernels: &[#(#kernels),*],
         };
     }
+}
+
+/// The equations as a constant list.
+pub(super) fn equations(written: &[WrittenEquation]) -> TokenStream {
+    let equations = written.iter().map(|WrittenEquation { name, left, right }| {
+        let (left, right) = (formula(left), formula(right));
+        quote!(::evi_core::__private::Equation { name: #name, left: #left, right: #right })
+    });
+    quote!(&[#(#equations),*])
 }
 
 /// `MechanicalSystem::SOURCE` with the feature `source`, otherwise nothing: the text of `expansion`.

@@ -123,6 +123,15 @@ impl Affine {
         Some(result)
     }
 
+    /// What the index at `level` is called in it, if it has that one.
+    pub(crate) fn name_of(&self, level: usize) -> Option<&str> {
+        let variables = self.terms.iter().flat_map(|(product, _)| product);
+        variables.into_iter().find_map(|variable| match variable {
+            Variable::Index { level: known, name } if *known == level => Some(name.as_str()),
+            _ => None,
+        })
+    }
+
     /// Levels of the indices in it.
     pub(crate) fn levels(&self) -> impl Iterator<Item = usize> {
         self.terms.iter().flat_map(|(product, _)| product.iter().filter_map(Variable::level))

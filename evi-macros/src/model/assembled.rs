@@ -11,7 +11,9 @@ use proc_macro2::TokenStream;
 use super::found::Found;
 use super::resolve::Scope;
 use super::tables::{Tables, element_name};
-use super::{Bound, Energy, Forces, IndexRange, Model, Named, Place, coordinate_entries, equations};
+use super::{
+    Bound, Energy, Forces, IndexRange, Model, Named, Place, coordinate_entries, equations, input_names,
+};
 use crate::diagnostics::Diagnostics;
 use crate::expr::{Binary, Composite, ExprId, Graph, Node, Symbol, Unary, substitute};
 use crate::syntax::{Declaration, Expansion};
@@ -21,6 +23,10 @@ pub(crate) struct Assembled {
     /// The elements that are different, each a scene in coordinates of its own.
     pub(crate) elements: Vec<Model>,
     pub(crate) families: Vec<Family>,
+    /// Names of the observed quantities.
+    pub(crate) observables: Vec<String>,
+    /// What they are sums of: which of them, and terms over ranges.
+    pub(crate) observed: Vec<(usize, Family)>,
     /// Indices that rustc checks.
     pub(crate) bounds: Vec<Bound>,
 }
@@ -44,6 +50,7 @@ struct Parts {
     dissipation: Vec<ExprId>,
     forces: Vec<(usize, Named)>,
     constraints: Vec<Named>,
+    observed: Option<Named>,
 }
 
 /// Resolves every name and finds the families.
@@ -53,24 +60,31 @@ pub(crate) fn resolve_assembled(
     diagnostics: &mut Diagnostics,
 ) -> Option<Assembled> {
     let (mut found, scope) = equations(declaration, Expansion::Looped, graph, diagnostics)?;
-    refuse(declaration, &found, diagnostics);
+    refuse(&found, diagnostics);
     let mut families: Vec<(Vec<IndexRange>, Parts)> = Vec::new();
     let mut sums = Sums { scope: &scope, graph, diagnostics };
     let whole = found.whole.as_ref().or(found.kinetic.as_ref()).map(|(root, _)| (*root, false));
     let potential = found.potential.as_ref().map(|(root, _)| (*root, true));
     for (root, is_negative) in whole.into_iter().chain(potential) {
-        for (ranges, term) in sums.terms(root, is_negative) {
+        for (ranges, term) in sums.terms(root, is_negative, ENERGY) {
             family(&mut families, &ranges).lagrangian.push(term);
         }
     }
     if let Some((_, root, _)) = &found.dissipation {
-        for (ranges, term) in sums.terms(*root, false) {
+        for (ranges, term) in sums.terms(*root, false, ENERGY) {
             family(&mut families, &ranges).dissipation.push(term);
         }
     }
     for (place, force) in std::mem::take(&mut found.forces) {
         sums.refuse_in(force.root, "a force of a family names its elements, not a sum over all");
         family(&mut families, &force.ranges).forces.push((place, force));
+    }
+    let mut observed: Vec<(usize, Vec<IndexRange>, Parts)> = Vec::new();
+    for (quantity, named) in found.observables.iter().enumerate() {
+        for (ranges, root) in sums.terms(named.root, false, QUANTITY) {
+            let term = Named { root, ..named.clone() };
+            observed.push((quantity, ranges, Parts { observed: Some(term), ..Parts::default() }));
+        }
     }
     for constraint in &found.constraints {
         sums.refuse_in(
@@ -88,21 +102,33 @@ pub(crate) fn resolve_assembled(
     }
     let named_constants = scope.named_constants();
     let tables = scope.tables;
-    let mut assembled = Assembled { elements: Vec::new(), families: Vec::new(), bounds: Vec::new() };
-    for (ranges, parts) in families {
+    let mut elements: Vec<Model> = Vec::new();
+    let mut repeated = |ranges, parts| {
         let (model, places) = element(declaration, parts, &found, &tables, &named_constants, graph);
         let constraints = model.constraints.iter().map(|constraint| constraint.name.clone()).collect();
         // Branches of a tree differ in their places alone.
-        let known = assembled.elements.iter().position(|known| are_equal(known, &model));
+        let known = elements.iter().position(|known| are_equal(known, &model));
         let element = known.unwrap_or_else(|| {
-            assembled.elements.push(model);
-            assembled.elements.len() - 1
+            elements.push(model);
+            elements.len() - 1
         });
-        assembled.families.push(Family { ranges, element, places, constraints });
-    }
-    assembled.bounds = tables.bounds;
-    Some(assembled)
+        Family { ranges, element, places, constraints }
+    };
+    let families = families.into_iter().map(|(ranges, parts)| repeated(ranges, parts)).collect();
+    let observed =
+        observed.into_iter().map(|(quantity, ranges, parts)| (quantity, repeated(ranges, parts))).collect();
+    let observables = found.observables.iter().map(|named| named.name.clone()).collect();
+    Some(Assembled { elements, families, observables, observed, bounds: tables.bounds })
 }
+
+/// What a sum is refused in, and what to write there.
+type Linear = (&'static str, &'static str);
+
+const ENERGY: Linear = ("couple everything with everything", "an energy is a sum of terms");
+const QUANTITY: Linear = (
+    "be no sum over elements",
+    "an observed quantity is a sum of terms: observe the sums, and compute with what is recorded",
+);
 
 /// Whether two elements have the same equations in the same parameters: equal expressions are one node.
 fn are_equal(a: &Model, b: &Model) -> bool {
@@ -110,27 +136,29 @@ fn are_equal(a: &Model, b: &Model) -> bool {
         let constraints = model.constraints.iter().map(|constraint| constraint.root);
         let dissipation = model.forces.dissipation.iter().map(|(_, root)| *root);
         let forces = model.forces.generalized.iter().map(|(_, force)| force.root);
-        std::iter::once(model.lagrangian).chain(constraints).chain(dissipation).chain(forces).collect()
+        let observed = model.observables.iter().map(|observed| observed.root);
+        let others = constraints.chain(dissipation).chain(forces).chain(observed);
+        std::iter::once(model.lagrangian).chain(others).collect()
     };
     let shape = |model: &Model| {
         let forced: Vec<usize> = model.forces.generalized.iter().map(|(coordinate, _)| *coordinate).collect();
         let (n, has_dissipation) = (model.coordinates.len(), model.forces.dissipation.is_some());
-        (n, model.constraints.len(), has_dissipation, forced)
+        (n, model.constraints.len(), has_dissipation, forced, model.observables.len())
     };
     shape(a) == shape(b) && roots(a) == roots(b)
 }
 
 /// Reports items that a sum of elements does not have.
-fn refuse(declaration: &Declaration, found: &Found, diagnostics: &mut Diagnostics) {
-    let why = "where sums stay loops; give all arrays small literal sizes for it";
+fn refuse(found: &Found, diagnostics: &mut Diagnostics) {
     for (_, frequency) in &found.frequencies {
-        diagnostics.report(frequency.span, format!("a scene has no `frequency` {why}"));
+        let message = "a scene has no `frequency` where sums stay loops: its curves are straight, or polynomials by `Galerkin`, which resolve \
+                       fast motions by nodes; with small literal sizes it may have one";
+        diagnostics.report(frequency.span, message);
     }
-    for observed in &found.observables {
-        diagnostics.report(observed.span, format!("a scene has no `observe` {why}"));
-    }
-    for input in super::input_names(declaration) {
-        diagnostics.report(input.span(), format!("a scene has no inputs {why}"));
+    for observed in found.observables.iter().filter(|observed| !observed.ranges.is_empty()) {
+        let message = "a quantity of a family is one number per element where sums stay loops: observe a `sum(..)`, or one element, `p[0]`; \
+                       `StateWriter::of` records coordinates";
+        diagnostics.report(observed.span, message);
     }
 }
 
@@ -159,8 +187,8 @@ struct Pending {
 }
 
 impl Sums<'_, '_> {
-    /// The terms of an energy without sums in them, each with the ranges that it is summed over, in the order of the source.
-    fn terms(&mut self, root: ExprId, is_negative: bool) -> Vec<(Vec<IndexRange>, ExprId)> {
+    /// The terms of an energy or an observed quantity without sums in them, each with the ranges that it is summed over, in the order of the source.
+    fn terms(&mut self, root: ExprId, is_negative: bool, kind: Linear) -> Vec<(Vec<IndexRange>, ExprId)> {
         let with_sums = self.with_sums(root);
         let factor = is_negative.then(|| self.graph.number(-1.0));
         let mut pending = vec![Pending { root, factor, ranges: Vec::new() }];
@@ -210,9 +238,11 @@ impl Sums<'_, '_> {
                     pending.push(Pending { root: body, factor, ranges: inside });
                 }
                 _ => {
-                    let message = "a sum inside of a product of sums, a power or a function would couple everything with \
-                                   everything: where sums stay loops, an energy is a sum of terms";
-                    self.report(root, message);
+                    let (would, instead) = kind;
+                    let message = format!(
+                        "a sum inside of a product of sums, a power or a function would {would}: where sums stay loops, {instead}"
+                    );
+                    self.report(root, &message);
                 }
             }
         }
@@ -272,6 +302,7 @@ fn element(
         .chain(dissipation)
         .chain(parts.forces.iter().map(|(_, force)| force.root))
         .chain(parts.constraints.iter().map(|constraint| constraint.root))
+        .chain(parts.observed.iter().map(|observed| observed.root))
         .collect();
     let symbols = graph.symbols(&roots);
     let forced = parts.forces.iter().map(|(place, _)| *place);
@@ -304,7 +335,12 @@ fn element(
     let forces =
         parts.forces.into_iter().map(|(place, force)| (local[&place], Named { root: next(), ..force }));
     let generalized = forces.collect();
-    let constraints = parts.constraints.into_iter().map(|constraint| Named { root: next(), ..constraint });
+    let constraints: Vec<Named> =
+        parts.constraints.into_iter().map(|constraint| Named { root: next(), ..constraint }).collect();
+    let observables = parts.observed.into_iter().map(|observed| Named { root: next(), ..observed }).collect();
+    // All of them, so that they keep their numbers.
+    let has_inputs = symbols.iter().any(|symbol| matches!(symbol, Symbol::Input(_)));
+    let inputs = if has_inputs { input_names(declaration).cloned().collect() } else { Vec::new() };
     let entries = coordinate_entries(declaration);
     let name = |place: &Place| element_name(&entries[place.array].name.to_string(), &place.indices);
     let model = Model {
@@ -313,11 +349,11 @@ fn element(
         named_constants: named_constants.to_vec(),
         lagrangian,
         energies,
-        constraints: constraints.collect(),
-        inputs: Vec::new(),
+        constraints,
+        inputs,
         forces: Forces { dissipation, generalized },
         frequencies: Vec::new(),
-        observables: Vec::new(),
+        observables,
         bounds: Vec::new(),
         lets: Vec::new(),
         source: None,

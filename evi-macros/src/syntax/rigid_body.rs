@@ -9,15 +9,15 @@
 //! ```
 //!
 //! (P. Betsch, S. Leyendecker, Int. J. Numer. Meth. Eng. 67 (2006) 499), whose mass matrix is constant. Six constraints keep the directors
-//! orthonormal.
+//! orthonormal. The bodies `b[i in 0..N]` are the array `b: [N, 4, 3]`, their energies a sum and their constraints families.
 
 use proc_macro2::{Delimiter, Ident, Literal, TokenStream, TokenTree};
 use quote::{format_ident, quote_spanned};
 
 use super::expression::Expression;
-use super::indexed::Indexed;
+use super::indexed::{Bracket, Indexed, Range, brackets, leading_brackets};
 use super::item::{Constraint, Coordinates, Item, identifier, parenthesized, split_at_commas};
-use super::shape::Coordinate;
+use super::shape::{Coordinate, size};
 use crate::diagnostics::{Diagnostics, suggestion};
 use crate::expr::Affine;
 
@@ -28,6 +28,8 @@ const PROPERTIES: [&str; 3] = ["mass", "center", "inertia"];
 pub(crate) struct RigidBody {
     keyword: Ident,
     name: Ident,
+    /// Of several bodies their index, and how many they are.
+    family: Option<(Range, Affine)>,
     properties: [Option<TokenStream>; 3],
 }
 
@@ -39,14 +41,20 @@ pub(super) fn rigid_body(
 ) -> Option<RigidBody> {
     let group = parenthesized(keyword, FORM, rest, diagnostics)?;
     let entries = split_at_commas(group.stream());
-    let Some(([TokenTree::Ident(name)], given)) =
-        entries.split_first().map(|(name, given)| (name.as_slice(), given))
+    let Some(([TokenTree::Ident(name), behind @ ..], given)) = entries
+        .split_first()
+        .map(|(name, given)| (name.as_slice(), given))
+        .filter(|(name, _)| !matches!(name, [_, TokenTree::Punct(_), ..]))
     else {
         let span = entries.first().map_or(keyword.span(), |entry| entry[0].span());
         diagnostics.report(span, format!("a body has a name: write `{FORM}`"));
         return None;
     };
     let name = identifier(name, diagnostics)?;
+    let family = match behind {
+        [] => None,
+        behind => Some(family(&name, behind, diagnostics)?),
+    };
     let mut properties = [const { None }; 3];
     let mut is_mistaken = false;
     for entry in given {
@@ -87,7 +95,40 @@ pub(super) fn rigid_body(
             diagnostics.report(name.span(), format!("body `{name}` has no `{property}`: write `{FORM}`"));
         }
     }
-    Some(RigidBody { keyword: keyword.clone(), name, properties })
+    Some(RigidBody { keyword: keyword.clone(), name, family, properties })
+}
+
+/// The index of bodies that are counted, and how many they are.
+fn family(name: &Ident, behind: &[TokenTree], diagnostics: &mut Diagnostics) -> Option<(Range, Affine)> {
+    let groups = leading_brackets(behind);
+    let indexed = brackets(name, &groups, diagnostics);
+    let counted = match indexed.brackets.as_slice() {
+        [Bracket::Each(range)] if groups.len() == behind.len() => {
+            let ends = range.ends.as_ref()?;
+            let size = match ends.root() {
+                syn::Expr::Range(syn::ExprRange {
+                    start: Some(start),
+                    end: Some(end),
+                    limits: syn::RangeLimits::HalfOpen(_),
+                    ..
+                }) if is_zero(start) => Some(size(end, diagnostics)?),
+                _ => None,
+            };
+            size.map(|size| (range.clone(), size))
+        }
+        _ => None,
+    };
+    if counted.is_none() {
+        let message = format!(
+            "several bodies are counted from 0 by one index: write `rigid_body({name}[i in 0..N], ..)`"
+        );
+        diagnostics.report(behind[0].span(), message);
+    }
+    counted
+}
+
+fn is_zero(expression: &syn::Expr) -> bool {
+    matches!(expression, syn::Expr::Lit(syn::ExprLit { lit: syn::Lit::Int(number), .. }) if number.base10_digits() == "0")
 }
 
 /// Adds what bodies stand for to the other items: their coordinates behind those of the user, their energies to the kinetic energy, their
@@ -138,7 +179,18 @@ pub(super) enum ItemOrBody {
 
 impl RigidBody {
     fn coordinate(&self) -> Coordinate {
-        Coordinate { name: self.name.clone(), shape: vec![Affine::number(4), Affine::number(3)] }
+        let count = self.family.as_ref().map(|(_, count)| count.clone());
+        let shape = count.into_iter().chain([Affine::number(4), Affine::number(3)]).collect();
+        Coordinate { name: self.name.clone(), shape }
+    }
+
+    /// The body, of several the one with their index.
+    fn body(&self) -> TokenStream {
+        let name = &self.name;
+        match &self.family {
+            None => quote_spanned!(name.span()=> #name),
+            Some((Range { index, .. }, _)) => quote_spanned!(name.span()=> #name[#index]),
+        }
     }
 
     fn zero(&self) -> TokenStream {
@@ -148,19 +200,26 @@ impl RigidBody {
     /// Adds the kinetic energy to an energy, unless one of them is mistaken.
     fn add_energy_to(&self, energy: &mut Option<Expression>, diagnostics: &mut Diagnostics) {
         let (Some(written), [Some(mass), Some(_), Some(_)]) = (&*energy, &self.properties) else { return };
-        let (span, name) = (self.keyword.span(), &self.name);
+        let (span, body) = (self.keyword.span(), self.body());
         let center = (1..4_usize).filter_map(|k| {
             let (element, k) = (self.element(1, k - 1)?, Literal::usize_unsuffixed(k));
-            Some(quote_spanned!(span=> + #element * der(#name[#k])))
+            Some(quote_spanned!(span=> + #element * der(#body[#k])))
         });
         let tensor = (1..4_usize).map(|k| {
             let [own, second, third] = [k, k % 3 + 1, (k + 1) % 3 + 1]
                 .map(|axis| self.element(2, axis - 1).unwrap_or_else(|| self.zero()));
             let k = Literal::usize_unsuffixed(k);
-            quote_spanned!(span=> + 0.25 * (#second + #third - #own) * der(#name[#k]).norm_squared())
+            quote_spanned!(span=> + 0.25 * (#second + #third - #own) * der(#body[#k]).norm_squared())
         });
         let own =
-            quote_spanned!(span=> 0.5 * (#mass) * (der(#name[0]) #(#center)*).norm_squared() #(#tensor)*);
+            quote_spanned!(span=> 0.5 * (#mass) * (der(#body[0]) #(#center)*).norm_squared() #(#tensor)*);
+        let own = match &self.family {
+            Some((Range { index, ends: Some(ends) }, _)) => {
+                let ends = &ends.tokens;
+                quote_spanned!(span=> sum(#ends, |#index| #own))
+            }
+            _ => own,
+        };
         let tokens = if written.is_number(0.0) {
             own
         } else {
@@ -198,18 +257,19 @@ impl RigidBody {
             let name = format_ident!("{}_{label}", self.name, span = self.name.span());
             let (left, right) =
                 (Expression::parse(left, span, diagnostics), Expression::parse(right, span, diagnostics));
-            Item::Constraint(Constraint { name: Some(Indexed { name, brackets: Vec::new() }), left, right })
+            let brackets = self.family.iter().map(|(range, _)| Bracket::Each(range.clone())).collect();
+            Item::Constraint(Constraint { name: Some(Indexed { name, brackets }), left, right })
         };
-        let name = &self.name;
+        let body = self.body();
         let mut constraints = Vec::new();
         for k in 1..4_usize {
             let place = Literal::usize_unsuffixed(k);
-            let length = quote_spanned!(span=> #name[#place].norm_squared());
+            let length = quote_spanned!(span=> #body[#place].norm_squared());
             constraints.push(constraint(format!("unit{k}"), length, quote_spanned!(span=> 1.0)));
         }
         for (j, k) in [(1_usize, 2_usize), (1, 3), (2, 3)] {
             let (first, second) = (Literal::usize_unsuffixed(j), Literal::usize_unsuffixed(k));
-            let product = quote_spanned!(span=> #name[#first].dot(#name[#second]));
+            let product = quote_spanned!(span=> #body[#first].dot(#body[#second]));
             constraints.push(constraint(format!("right{j}{k}"), product, self.zero()));
         }
         constraints

@@ -45,7 +45,7 @@ pub(super) fn sizes(name: &Ident, group: &Group, diagnostics: &mut Diagnostics) 
 }
 
 /// A size: at least 1 where it is a number.
-fn size(expression: &syn::Expr, diagnostics: &mut Diagnostics) -> Option<Affine> {
+pub(super) fn size(expression: &syn::Expr, diagnostics: &mut Diagnostics) -> Option<Affine> {
     let mut unknown = |_: &Ident, _: &mut Diagnostics| Integer::Unknown;
     let size = affine(expression, &mut unknown, diagnostics)?;
     if size.as_number().is_some_and(|number| number < 1) {

@@ -78,6 +78,28 @@ fn terms_are_distributed_over_their_sums() {
 }
 
 #[test]
+fn observed_quantities_are_families_of_their_own() {
+    let source = "#[evi(coordinates(p: [N, 2], x),
+              lagrangian = sum(0..N, |i| m * der(p[i]).norm_squared()) + der(x).powi(2),
+              input(push), force(x: push),
+              observe(height: sum(0..N, |i| p[i][1]) / total - x),
+              observe(power: push * der(x)))]
+         struct S { m: f64, total: f64 }";
+    // They move nothing.
+    assert_eq!(families(source), ["0..N (p[i, 0], p[i, 1])", "(x)"]);
+    let (assembled, _) = resolved(source);
+    assert_eq!(assembled.observables, ["height", "power"]);
+    let terms: Vec<(usize, usize, usize)> = assembled
+        .observed
+        .iter()
+        .map(|(quantity, family)| {
+            (*quantity, family.ranges.len(), assembled.elements[family.element].inputs.len())
+        })
+        .collect();
+    assert_eq!(terms, [(0, 1, 0), (0, 0, 0), (1, 0, 1)]);
+}
+
+#[test]
 fn trees_and_rings_are_several_families() {
     let source = "#[evi(coordinates(p: [2 * N + 1, 2]),
               lagrangian = sum(0..2 * N + 1, |i| der(p[i]).norm_squared()),
@@ -164,6 +186,13 @@ fn what_no_loop_over_elements_is_worth_is_refused() {
     check_mistake(&items("force(p[0]: sum(0..N, |i| p[i]))"), "a force of a family names its elements");
     check_mistake(&items("force(p: 1.0)"), "write `p[i in 0..N]` for all of its elements");
     check_mistake(&items("frequency(p[i in 0..N]: k)"), "a scene has no `frequency` where sums stay loops");
-    check_mistake(&items("observe(first: p[0])"), "a scene has no `observe` where sums stay loops");
+    check_mistake(
+        &items("observe(each[i in 0..N]: p[i])"),
+        "a quantity of a family is one number per element where sums stay loops",
+    );
+    check_mistake(
+        &items("observe(length: sum(0..N, |i| p[i]).sqrt())"),
+        "a sum inside of a product of sums, a power or a function would be no sum over elements",
+    );
     check_mistake("kinetic = 0.0, potential = p[0]", "coordinate `p` has no mass");
 }

@@ -14,7 +14,8 @@ const N: usize = 10;
     input(u),
     force(p[0]: u * sum(0..N, |i| p[i])),
     frequency(p[0]: 1.0),
-    observe(first: p[0]),
+    observe(each[i in 0..N]: p[i]),
+    observe(length: sum(0..N, |i| p[i]).sqrt()),
 )]
 struct NoLoop;
 

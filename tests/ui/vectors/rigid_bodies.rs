@@ -19,6 +19,8 @@ struct Points;
     rigid_body(c, mass = 1.0, center = [0.0, 1.0, 2.0, 3.0], inertia = [1.0, 1.0, 1.0]),
     rigid_body(e, mass = 1.0, center = [0.0, 1.0, 2.0], inertia = j),
     rigid_body d,
+    rigid_body(f[i in 1..4], mass = 1.0, center = [0.0, 1.0, 2.0], inertia = [1.0, 1.0, 1.0]),
+    rigid_body(g[2], mass = 1.0, center = [0.0, 1.0, 2.0], inertia = [1.0, 1.0, 1.0]),
     potential = 0.0,
 )]
 struct Properties { j: f64 }

@@ -1,5 +1,7 @@
 //! Loops over the kernels of all elements of a family, for numbers and for lanes.
 
+use super::super::sparse::Symmetric;
+use super::LanePoint;
 use super::repeated::{Element, Repeated};
 use crate::array::Array;
 use crate::scalar::{LaneOperation, Lanes, Scalar};
@@ -10,9 +12,11 @@ use crate::system::{Entry, MechanicalSystem};
 pub(super) fn add_force<E: MechanicalSystem, T: Scalar>(
     elements: &[Element<E>],
     (t, q, v): (T, &[T], Option<&[T]>),
+    inputs: &E::PerInput<f64>,
     force: &mut [T],
 ) {
     let zero = T::from_f64(0.0);
+    let inputs: E::PerInput<T> = Array::from_fn(|i| T::from_f64(inputs[i]));
     for element in elements {
         let constants = element.constants();
         let q = element.gather(q);
@@ -22,7 +26,7 @@ pub(super) fn add_force<E: MechanicalSystem, T: Scalar>(
         };
         let mut local = E::lagrangian_gradient(&constants, t, &q, &v).force;
         if E::STRUCTURE.forces.exist() {
-            let added = E::forces(&constants, t, &q, &v, &E::PerInput::<T>::filled(zero));
+            let added = E::forces(&constants, t, &q, &v, &inputs);
             for &i in E::STRUCTURE.forces.forced {
                 local[i] = local[i] + added[i];
             }
@@ -118,6 +122,7 @@ impl<E: MechanicalSystem> LaneOperation for SubtractPull<'_, E> {
 pub(super) struct AddForce<'a, E: MechanicalSystem> {
     pub(super) elements: &'a [Element<E>],
     pub(super) at: (Lanes, &'a [Lanes], Option<&'a [Lanes]>),
+    pub(super) inputs: &'a E::PerInput<f64>,
     pub(super) force: &'a mut [Lanes],
 }
 
@@ -126,7 +131,68 @@ impl<E: MechanicalSystem> LaneOperation for AddForce<'_, E> {
 
     #[inline(always)]
     fn run<const FUSED: bool>(self) {
-        add_force::<E, Lanes>(self.elements, self.at, self.force);
+        add_force::<E, Lanes>(self.elements, self.at, self.inputs, self.force);
+    }
+}
+
+/// Forces and momenta of all elements, as an operation on lanes.
+pub(super) struct AddGradient<'a, E: MechanicalSystem> {
+    pub(super) elements: &'a [Element<E>],
+    pub(super) at: LanePoint<'a>,
+    pub(super) inputs: &'a E::PerInput<f64>,
+    pub(super) force: &'a mut [Lanes],
+    pub(super) momentum: &'a mut [Lanes],
+}
+
+impl<E: MechanicalSystem> LaneOperation for AddGradient<'_, E> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        let LanePoint { t, q, v } = self.at;
+        let inputs: E::PerInput<Lanes> = Array::from_fn(|i| Lanes::splat(self.inputs[i]));
+        for element in self.elements {
+            let (constants, q, v) = (element.constants(), element.gather(q), element.gather(v));
+            let mut local = E::lagrangian_gradient(&constants, t, &q, &v);
+            if E::STRUCTURE.forces.exist() {
+                let added = E::forces(&constants, t, &q, &v, &inputs);
+                for &i in E::STRUCTURE.forces.forced {
+                    local.force[i] = local.force[i] + added[i];
+                }
+            }
+            element.scatter(&local.force, self.force);
+            element.scatter(&local.momentum, self.momentum);
+        }
+    }
+}
+
+/// Masses of all elements, as an operation on lanes.
+pub(super) struct AddMass<'a, E: MechanicalSystem> {
+    pub(super) elements: &'a [Element<E>],
+    pub(super) at: LanePoint<'a>,
+    pub(super) places: &'a [u32],
+    pub(super) matrix: &'a mut Symmetric<Lanes>,
+}
+
+impl<E: MechanicalSystem> LaneOperation for AddMass<'_, E> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        let entries = E::STRUCTURE.hessian.vv;
+        if entries.is_empty() {
+            return;
+        }
+        let LanePoint { t, q, v } = self.at;
+        for (element, places) in self.elements.iter().zip(self.places.chunks_exact(entries.len())) {
+            let constants = element.constants();
+            let (_, hessian) =
+                E::lagrangian_derivatives(&constants, t, &element.gather(q), &element.gather(v));
+            for (&place, entry) in places.iter().zip(entries) {
+                let value = entry.value(constants.as_ref(), hessian.as_ref());
+                self.matrix.add::<FUSED>(place, value, Lanes::splat(1.0));
+            }
+        }
     }
 }
 

@@ -3,18 +3,31 @@
 //! What is known of a scene's elements at compile time ends here: above, a family is a [`Elements`], and a run is the same code for every scene.
 
 mod loops;
+mod observed;
 mod repeated;
 
+pub(super) use observed::{ObservedElements, Term};
 pub(super) use repeated::Repeated;
 
 use super::Point;
+use super::sparse::Symmetric;
+use crate::memory::Digest;
 use crate::scalar::{InstructionSet, Lanes};
-use crate::system::Structure;
+use crate::system::{Structure, SystemReport};
 
 /// A family whose kernels add to vectors of the whole scene.
 pub(super) trait Elements {
     /// What is known of one element.
     fn structure(&self) -> &'static Structure;
+
+    /// The element as a scene of its own.
+    fn report(&self) -> SystemReport;
+
+    /// Sets what forces take from the caller.
+    fn set_inputs(&mut self, inputs: &[f64]);
+
+    /// Number of inputs of an element.
+    fn n_inputs(&self) -> usize;
 
     /// Number of elements.
     fn count(&self) -> usize;
@@ -30,6 +43,9 @@ pub(super) trait Elements {
 
     /// The first parameter that is not finite: its element, name and value.
     fn parameter_that_is_not_finite(&self) -> Option<(usize, &'static str, f64)>;
+
+    /// Adds to the digest what tells this family from one of other equations or places, and to the constants those of every element.
+    fn tell(&self, equations: &mut Digest, constants: &mut Vec<u64>);
 
     /// `Σ v · ∂L/∂v − L`.
     fn energy(&self, at: Point<'_>) -> f64;
@@ -49,6 +65,13 @@ pub(super) trait Elements {
         places: &[u32],
         entries: &mut [f64],
     );
+
+    /// Calls `visit(row, col)` for every number that the second derivatives of constraints of an element add to a matrix over coordinates.
+    fn for_each_curved_pair(&self, visit: &mut dyn FnMut(usize, usize));
+
+    /// Adds the second derivatives of `μᵀφ` to `entries`, at the `places` that follow each other as [`for_each_curved_pair`](Self::for_each_curved_pair)
+    /// does; `multipliers` are those of this family.
+    fn add_bends(&self, t: f64, q: &[f64], multipliers: &[f64], places: &[u32], entries: &mut [f64]);
 
     /// Overwrites `φ`, the nonzero slopes `∂φ/∂q` of its pattern, and `∂φ/∂t` of this family.
     fn constraint_derivatives(
@@ -76,6 +99,24 @@ pub(super) trait Elements {
         force: &mut [Lanes],
     );
 
+    /// [`add_gradient`](Self::add_gradient) at a node per lane.
+    fn add_lane_gradient(
+        &self,
+        instructions: InstructionSet,
+        at: LanePoint<'_>,
+        force: &mut [Lanes],
+        momentum: &mut [Lanes],
+    );
+
+    /// Adds `∂²L/∂v²` at a node per lane, entry by entry of its pattern, the lower or upper triangle, at the `places` in a matrix.
+    fn add_lane_mass(
+        &self,
+        instructions: InstructionSet,
+        at: LanePoint<'_>,
+        places: &[u32],
+        matrix: &mut Symmetric<Lanes>,
+    );
+
     /// [`constraints`](Self::constraints) at a node per lane.
     fn lane_constraints(&self, instructions: InstructionSet, t: Lanes, q: &[Lanes], values: &mut [Lanes]);
 
@@ -98,6 +139,14 @@ pub(super) trait Elements {
         x: &[Lanes],
         force: &mut [Lanes],
     );
+}
+
+/// Points of a motion, a node per lane.
+#[derive(Clone, Copy)]
+pub(super) struct LanePoint<'a> {
+    pub(super) t: Lanes,
+    pub(super) q: &'a [Lanes],
+    pub(super) v: &'a [Lanes],
 }
 
 /// What second derivatives are multiplied with.

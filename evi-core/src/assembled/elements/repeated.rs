@@ -1,11 +1,14 @@
 //! A family of elements of one type.
 
 use super::super::Point;
-use super::loops::{self, AddForce, Constraints, SubtractPull};
-use super::{Elements, SecondWeights};
+use super::super::sparse::Symmetric;
+use super::loops::{self, AddForce, AddGradient, AddMass, Constraints, SubtractPull};
+use super::{Elements, LanePoint, SecondWeights};
 use crate::array::Array;
+use crate::mechanics::{for_each_constraint_curvature, for_each_curved_pair};
+use crate::memory::Digest;
 use crate::scalar::{InstructionSet, Lanes, Scalar};
-use crate::system::{MechanicalSystem, Structure};
+use crate::system::{MechanicalSystem, Structure, SystemReport};
 
 /// One element: its constants, and where its coordinates lie.
 pub(super) struct Element<E: MechanicalSystem> {
@@ -16,14 +19,13 @@ pub(super) struct Element<E: MechanicalSystem> {
 /// The elements of a family.
 pub(in super::super) struct Repeated<E: MechanicalSystem> {
     elements: Vec<Element<E>>,
+    /// Those of the scene.
+    inputs: E::PerInput<f64>,
     broken: Option<(usize, &'static str, f64)>,
 }
 
 impl<E: MechanicalSystem> Repeated<E> {
-    const HAS_NO_INPUTS: () = assert!(E::N_INPUTS == 0, "elements of an assembled scene have no inputs");
-
     pub(in super::super) fn new(elements: impl Iterator<Item = (E, E::PerCoordinate<usize>)>) -> Self {
-        let () = Self::HAS_NO_INPUTS;
         let mut broken = None;
         let prepare = |(index, (element, places)): (usize, (E, E::PerCoordinate<usize>))| {
             let parameters = element.parameters();
@@ -32,13 +34,10 @@ impl<E: MechanicalSystem> Repeated<E> {
                     broken = Some((index, *name, value));
                 }
             }
-            Element {
-                constants: E::constants(&parameters),
-                places: Array::from_fn(|i| u32::try_from(places[i]).unwrap_or(u32::MAX)),
-            }
+            Element::new(&element, &places)
         };
         let elements = elements.enumerate().map(prepare).collect();
-        Self { elements, broken }
+        Self { elements, inputs: Array::filled(0.0), broken }
     }
 
     /// Whether the velocity enters `∂L/∂q + f`.
@@ -48,6 +47,13 @@ impl<E: MechanicalSystem> Repeated<E> {
 }
 
 impl<E: MechanicalSystem> Element<E> {
+    pub(super) fn new(element: &E, places: &E::PerCoordinate<usize>) -> Self {
+        Self {
+            constants: E::constants(&element.parameters()),
+            places: Array::from_fn(|i| u32::try_from(places[i]).unwrap_or(u32::MAX)),
+        }
+    }
+
     #[inline(always)]
     pub(super) fn gather<T: Scalar>(&self, of_scene: &[T]) -> E::PerCoordinate<T> {
         Array::from_fn(|i| of_scene[self.places[i] as usize])
@@ -72,6 +78,20 @@ impl<E: MechanicalSystem> Elements for Repeated<E> {
         &E::STRUCTURE
     }
 
+    fn report(&self) -> SystemReport {
+        E::REPORT
+    }
+
+    fn set_inputs(&mut self, inputs: &[f64]) {
+        if E::N_INPUTS == inputs.len() {
+            self.inputs.as_mut().copy_from_slice(inputs);
+        }
+    }
+
+    fn n_inputs(&self) -> usize {
+        E::N_INPUTS
+    }
+
     fn count(&self) -> usize {
         self.elements.len()
     }
@@ -92,6 +112,15 @@ impl<E: MechanicalSystem> Elements for Repeated<E> {
         self.broken
     }
 
+    fn tell(&self, equations: &mut Digest, constants: &mut Vec<u64>) {
+        E::REPORT.add_to(equations);
+        equations.add(self.elements.len() as u64);
+        for Element { constants: values, places } in &self.elements {
+            places.as_ref().iter().for_each(|place| equations.add(u64::from(*place)));
+            constants.extend(values.as_ref().iter().map(|value| value.to_bits()));
+        }
+    }
+
     fn energy(&self, at: Point<'_>) -> f64 {
         let energy = |element: &Element<E>| {
             let (q, v) = (element.gather(at.q), element.gather(at.v));
@@ -107,8 +136,7 @@ impl<E: MechanicalSystem> Elements for Repeated<E> {
             let (q, v) = (element.gather(at.q), element.gather(at.v));
             let mut local = E::lagrangian_gradient(&element.constants, at.t, &q, &v);
             if E::STRUCTURE.forces.exist() {
-                let none = E::PerInput::<f64>::filled(0.0);
-                let added = E::forces(&element.constants, at.t, &q, &v, &none);
+                let added = E::forces(&element.constants, at.t, &q, &v, &self.inputs);
                 for &i in E::STRUCTURE.forces.forced {
                     local.force[i] += added[i];
                 }
@@ -119,7 +147,7 @@ impl<E: MechanicalSystem> Elements for Repeated<E> {
     }
 
     fn add_force(&self, at: Point<'_>, force: &mut [f64]) {
-        loops::add_force::<E, f64>(&self.elements, (at.t, at.q, Some(at.v)), force);
+        loops::add_force::<E, f64>(&self.elements, (at.t, at.q, Some(at.v)), &self.inputs, force);
     }
 
     fn add_second_derivatives(
@@ -155,14 +183,33 @@ impl<E: MechanicalSystem> Elements for Repeated<E> {
                 add(weights.qv * value);
             }
             if structure.forces.exist() {
-                let none = E::PerInput::<f64>::filled(0.0);
-                let (_, varying) = E::force_derivatives(&element.constants, at.t, &q, &v, &none);
+                let (_, varying) = E::force_derivatives(&element.constants, at.t, &q, &v, &self.inputs);
                 for (block, weight) in [(structure.forces.q, weights.fq), (structure.forces.v, weights.fv)] {
                     for entry in block {
                         add(weight * entry.value(constants, varying.as_ref()));
                     }
                 }
             }
+        }
+    }
+
+    fn for_each_curved_pair(&self, visit: &mut dyn FnMut(usize, usize)) {
+        for_each_curved_pair::<E>(visit);
+    }
+
+    fn add_bends(&self, t: f64, q: &[f64], multipliers: &[f64], places: &[u32], entries: &mut [f64]) {
+        if E::N_CONSTRAINTS == 0 {
+            return;
+        }
+        let mut places = places.iter();
+        for (element, multipliers) in self.elements.iter().zip(multipliers.chunks_exact(E::N_CONSTRAINTS)) {
+            let multipliers = Array::from_fn(|c| multipliers[c]);
+            let at = (t, &element.gather(q));
+            for_each_constraint_curvature::<E>(&element.constants, at, &multipliers, |_, _, value| {
+                if let Some(&place) = places.next() {
+                    entries[place as usize] += value;
+                }
+            });
         }
     }
 
@@ -202,7 +249,27 @@ impl<E: MechanicalSystem> Elements for Repeated<E> {
         v: Option<&[Lanes]>,
         force: &mut [Lanes],
     ) {
-        instructions.run(AddForce { elements: &self.elements, at: (t, q, v), force });
+        instructions.run(AddForce { elements: &self.elements, at: (t, q, v), inputs: &self.inputs, force });
+    }
+
+    fn add_lane_gradient(
+        &self,
+        instructions: InstructionSet,
+        at: LanePoint<'_>,
+        force: &mut [Lanes],
+        momentum: &mut [Lanes],
+    ) {
+        instructions.run(AddGradient { elements: &self.elements, at, inputs: &self.inputs, force, momentum });
+    }
+
+    fn add_lane_mass(
+        &self,
+        instructions: InstructionSet,
+        at: LanePoint<'_>,
+        places: &[u32],
+        matrix: &mut Symmetric<Lanes>,
+    ) {
+        instructions.run(AddMass { elements: &self.elements, at, places, matrix });
     }
 
     fn lane_constraints(&self, instructions: InstructionSet, t: Lanes, q: &[Lanes], values: &mut [Lanes]) {

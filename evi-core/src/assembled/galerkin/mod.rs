@@ -1,27 +1,53 @@
-//! Galerkin steps of assembled scenes with a constant mass of small blocks, by passes over all nodes at once, a node per lane: the equations and the
-//! passes of [`Galerkin`](crate::integrator::Galerkin), with matrices of few nonzeros for every node.
+//! Galerkin steps of assembled scenes: the equations of [`Galerkin`](crate::integrator::Galerkin), with matrices of few nonzeros.
+//!
+//! A step is solved by passes over all nodes at once, a node per lane: [`passes`] where the mass is constant and of small blocks, [`points`] for any
+//! other. What passes do not solve is left to Newton's iteration on all points, in [`newton`].
 
 mod landing;
+mod newton;
 mod passes;
+mod points;
+mod start;
 
-use super::assembly::Point;
-use super::scene::{ConstantInertia, PreparedScene};
+use super::scene::PreparedScene;
 use super::{AssembledScheme, AssembledState, AssembledStep, AssemblyError};
-use crate::integrator::{Galerkin, IterationFailure, StepError, Symmetric as _, Tally};
+use crate::integrator::{Galerkin, Iteration, IterationFailure, StepError, Symmetric as _, Tally};
 use crate::linear::largest_magnitude;
+use crate::memory::memory;
 use crate::newton::NotConverged;
 use crate::scalar::InstructionSet;
-use crate::scheme::{SchemeError, checked_step_size};
+use crate::scheme::checked_step_size;
+use newton::NewtonTables;
+pub(super) use newton::PointMatrix;
 use passes::{FirstGuess, NodeStorage, Passes};
+use points::{PointPasses, PointStorage};
 
 /// The one-step map of a [`Galerkin`] scheme, with the storage of its passes: nothing is allocated under a step.
 ///
-/// A step whose passes do not converge from the past begins again from the acceleration of its start; one whose passes do not converge then has
+/// A step whose passes do not converge from the past begins again from the acceleration of its start; one whose passes do not converge then is left to
+/// Newton's iteration on all points, from the same start. Scenes whose matrix over all points is larger than a gigabyte have none: there such a step has
 /// failed.
 pub struct AssembledGalerkin<const K: usize> {
     h: f64,
     instructions: InstructionSet,
-    nodes: NodeStorage,
+    /// None where Newton's iteration alone is asked for.
+    nodes: Option<NodePasses>,
+    newton: NewtonTables,
+}
+
+/// The passes of a scene.
+enum NodePasses {
+    /// With a constant mass of small blocks.
+    Blocks(Box<NodeStorage>),
+    /// With any other.
+    Points(Box<PointStorage>),
+}
+
+/// How a step was solved.
+#[derive(Clone, Copy, PartialEq)]
+enum Solution {
+    ByPasses,
+    ByNewton,
 }
 
 impl<const K: usize> AssembledScheme for Galerkin<K> {
@@ -29,12 +55,24 @@ impl<const K: usize> AssembledScheme for Galerkin<K> {
 
     fn prepare(&self, scene: &mut PreparedScene) -> Result<AssembledGalerkin<K>, AssemblyError> {
         let h = checked_step_size(self.step_size())?;
-        let Some(ConstantInertia { gram, .. }) = &scene.inertia else {
-            let requirement = "a constant mass matrix that couples the coordinates of one body only";
-            return Err(SchemeError::UnsupportedStructure { scheme: "Galerkin", requirement }.into());
+        let nodes = match &scene.inertia {
+            _ if self.is_by_newton() => None,
+            Some(inertia) => {
+                let nodes = NodeStorage::new::<K>(&scene.assembly, &inertia.gram.pattern, h);
+                Some(NodePasses::Blocks(Box::new(nodes)))
+            }
+            None => match PointStorage::new::<K>(&scene.assembly, h) {
+                Ok(nodes) => Some(NodePasses::Points(Box::new(nodes))),
+                Err(fill) => return Err(scene.too_much(fill)),
+            },
         };
-        let nodes = NodeStorage::new::<K>(&scene.assembly, &gram.pattern, h);
-        Ok(AssembledGalerkin { h, instructions: InstructionSet::detect(), nodes })
+        scene.prepare_points(K);
+        Ok(AssembledGalerkin {
+            h,
+            instructions: InstructionSet::detect(),
+            nodes,
+            newton: NewtonTables::new::<K>(h),
+        })
     }
 }
 
@@ -44,7 +82,9 @@ impl<const K: usize> AssembledStep for AssembledGalerkin<K> {
     }
 
     fn forget(&mut self) {
-        self.nodes.forget();
+        if let Some(nodes) = &mut self.nodes {
+            nodes.forget();
+        }
     }
 
     fn advance(
@@ -53,80 +93,129 @@ impl<const K: usize> AssembledStep for AssembledGalerkin<K> {
         state: &mut AssembledState,
         tally: &mut impl Tally,
     ) -> Result<(), StepError> {
-        let passes = self.solve(scene, state, tally)?;
-        tally.count_corrections(passes);
-        self.land(scene, state, tally)?;
-        self.nodes.remember();
+        scene.know_start(state);
+        let solution = self.solve(scene, state, tally)?;
+        self.land(solution, scene, state, tally)?;
+        if let Some(nodes) = &mut self.nodes {
+            match solution {
+                Solution::ByPasses => nodes.remember(),
+                Solution::ByNewton => nodes.forget(),
+            }
+        }
         Ok(())
     }
 }
 
 impl<const K: usize> AssembledGalerkin<K> {
-    /// The vector instructions of the passes, for reports.
-    pub const fn instruction_set(&self) -> InstructionSet {
-        self.instructions
+    /// How its steps are solved: which iteration, in which vector instructions; to be printed.
+    pub const fn iteration(&self) -> Iteration {
+        match self.nodes {
+            Some(_) => Iteration::Passes(self.instructions),
+            None => Iteration::Newton,
+        }
     }
 
-    /// Passes until they have converged: from the last steps, or from the state alone. Returns their number.
+    /// Solves the equations of the step: by passes from the last steps, by passes from the state alone, or by Newton's iteration.
     fn solve(
         &mut self,
         scene: &mut PreparedScene,
         state: &AssembledState,
         tally: &mut impl Tally,
-    ) -> Result<usize, StepError> {
-        if self.nodes.knows_the_past() {
+    ) -> Result<Solution, StepError> {
+        if self.nodes.as_ref().is_some_and(NodePasses::knows_the_past) {
             if let Ok(passes) = self.pass(scene, state, FirstGuess::Continued) {
-                return Ok(passes);
+                tally.count_corrections(passes);
+                return Ok(Solution::ByPasses);
             }
             tally.count_restart();
-            self.nodes.forget();
+            self.forget();
         }
-        set_acceleration(scene, state).map_err(|matrix| StepError::Singular {
+        scene.set_acceleration(state, self.h).map_err(|matrix| StepError::Singular {
             t: state.t,
             correction: 0,
             matrix,
         })?;
-        self.pass(scene, state, FirstGuess::Constant).map_err(|failure| {
-            let residual = self.nodes.residuals().map(|lanes| lanes.largest());
-            IterationFailure::from(failure).at(state.t, largest_magnitude(residual), 1.0)
-        })
+        if self.nodes.is_some() {
+            let failure = match self.pass(scene, state, FirstGuess::Constant) {
+                Ok(passes) => {
+                    tally.count_corrections(passes);
+                    return Ok(Solution::ByPasses);
+                }
+                Err(failure) => failure,
+            };
+            if scene.points.is_none() {
+                let residual = self.nodes.as_ref().map_or(f64::NAN, NodePasses::largest_residual);
+                return Err(IterationFailure::from(failure).at(state.t, residual, 1.0));
+            }
+            tally.count_newton();
+            // Passes have overwritten it.
+            scene.set_acceleration(state, self.h).map_err(|matrix| StepError::Singular {
+                t: state.t,
+                correction: 0,
+                matrix,
+            })?;
+        }
+        self.newton.solve(scene, state, tally)?;
+        Ok(Solution::ByNewton)
     }
 
     fn pass(
         &mut self,
         scene: &mut PreparedScene,
-        state: &AssembledState,
+        start: &AssembledState,
         first: FirstGuess,
     ) -> Result<usize, NotConverged> {
-        let Self { instructions, nodes, .. } = self;
-        instructions.run(Passes::<K> { nodes, scene, start: state, first, instructions: *instructions })
+        let instructions = self.instructions;
+        match &mut self.nodes {
+            Some(NodePasses::Blocks(nodes)) => {
+                instructions.run(Passes::<K> { nodes, scene, start, first, instructions })
+            }
+            Some(NodePasses::Points(nodes)) => {
+                instructions.run(PointPasses::<K> { nodes, scene, start, first, instructions })
+            }
+            None => Err(NotConverged { corrections: 0, last_correction: f64::NAN }),
+        }
     }
 }
 
-/// Overwrites `space.moved` with the acceleration of the state: `M a + Gᵀ λ = ∂L/∂q + f`, `G a = −γ`.
-fn set_acceleration(
-    scene: &mut PreparedScene,
-    state: &AssembledState,
-) -> Result<(), crate::linear::SingularMatrix> {
-    let PreparedScene { assembly, inertia, space, .. } = scene;
-    let Some(ConstantInertia { mass, gram }) = inertia else { return Ok(()) };
-    let at = Point { t: state.t, q: &state.q, v: &state.v };
-    assembly.force(at, &mut space.pull);
-    mass.inverse_times(&space.pull, &mut space.moved);
-    if assembly.n_constraints == 0 {
-        return Ok(());
+memory!([const K: usize] AssembledGalerkin<K>, |words| Self { h, instructions: _, nodes, newton: _ } => {
+    words.fixed(*h);
+    words.fixed(K as f64);
+    // Which of them follows from the scene and the scheme.
+    match nodes {
+        Some(NodePasses::Blocks(nodes)) => words.part(nodes),
+        Some(NodePasses::Points(nodes)) => words.part(nodes),
+        None => words.fixed(-1.0),
     }
-    assembly.constraint_derivatives(state.t, &state.q, &mut space.at_start);
-    gram.factor(mass, &space.at_start.slopes).map_err(|(_, matrix)| matrix)?;
-    assembly.curvature(at, &mut space.rates);
-    assembly.add_rates(&space.at_start.slopes, &space.moved, &mut space.rates);
-    gram.solve(&mut space.rates);
-    super::assembly::subtract_pull::<f64, false>(
-        &assembly.slots,
-        &space.at_start.slopes,
-        &space.rates,
-        &mut space.pull,
-    );
-    mass.inverse_times(&space.pull, &mut space.moved);
-    Ok(())
+});
+
+impl NodePasses {
+    fn knows_the_past(&self) -> bool {
+        match self {
+            Self::Blocks(nodes) => nodes.knows_the_past(),
+            Self::Points(nodes) => nodes.knows_the_past(),
+        }
+    }
+
+    fn forget(&mut self) {
+        match self {
+            Self::Blocks(nodes) => nodes.forget(),
+            Self::Points(nodes) => nodes.forget(),
+        }
+    }
+
+    fn remember(&mut self) {
+        match self {
+            Self::Blocks(nodes) => nodes.remember(),
+            Self::Points(nodes) => nodes.remember(),
+        }
+    }
+
+    /// `|φ|` at the nodes where the last pass has ended.
+    fn largest_residual(&self) -> f64 {
+        match self {
+            Self::Blocks(nodes) => largest_magnitude(nodes.residuals().map(|lanes| lanes.largest())),
+            Self::Points(nodes) => largest_magnitude(nodes.residuals().map(|lanes| lanes.largest())),
+        }
+    }
 }

@@ -17,7 +17,8 @@ use super::super::gram::GramPattern;
 use super::super::mass::ConstantMass;
 use super::super::scene::{ConstantInertia, PreparedScene};
 use super::super::sparse::Symmetric;
-use crate::mechanics::product;
+use crate::mechanics::product_of_stored as product;
+use crate::memory::memory;
 use crate::newton::{LinearProgress, NotConverged};
 use crate::scalar::{InstructionSet, LaneOperation, Lanes, Scalar};
 use crate::scheme::{LaneTables, PAST};
@@ -109,6 +110,33 @@ impl NodeStorage {
     }
 }
 
+// The rest of the storage is written anew in every step.
+memory!([] NodeStorage, |words|
+    Self {
+        tables: _,
+        gram: _,
+        start_gram: _,
+        positions: _,
+        nearest: _,
+        accelerations: _,
+        forces: _,
+        uniform_force: _,
+        velocities: _,
+        multipliers: _,
+        shares: _,
+        values: _,
+        slopes: _,
+        start_slopes: _,
+        past,
+        known,
+    } => {
+        for accelerations in past {
+            words.lane_slice(accelerations);
+        }
+        words.index(known);
+    }
+);
+
 /// Where the passes begin.
 #[derive(Clone, Copy)]
 pub(super) enum FirstGuess {
@@ -183,7 +211,10 @@ impl NodeStorage {
         if force_varies {
             self.nearest.copy_from_slice(&self.positions);
         }
-        let per_reach = 1.0 / self.reach::<K>(mass, start);
+        let (reach, whole) = self.reach::<K>(mass, start);
+        let per_reach = 1.0 / reach;
+        // Residuals of constraints are those of positions that are rounded: no pass gains what is lost there.
+        let rounded = if is_constrained { reach / whole } else { 1.0 };
         let mut progress = LinearProgress::default();
         let (mut is_stale, mut passes) = (true, 0);
         loop {
@@ -234,7 +265,8 @@ impl NodeStorage {
             let length = lengths.largest() * per_reach;
             is_stale = length > STALE;
             // In the first pass nothing has moved yet.
-            if (passes == 1 && force_varies) || !progress.has_converged(length * length)? {
+            let square = (rounded * length) * (rounded * length);
+            if (passes == 1 && force_varies) || !progress.has_converged(square)? {
                 continue;
             }
             // Comparisons lose a NaN on the way; at the end of a step it arrives from every node.
@@ -256,15 +288,15 @@ impl NodeStorage {
         }
     }
 
-    /// What a step from `start` is found to the round-off of, in the metric of the mass matrix.
-    fn reach<const K: usize>(&self, mass: &ConstantMass, start: &AssembledState) -> f64 {
+    /// What a step from `start` is found to the round-off of, in the metric of the mass matrix, and what its positions are rounded in.
+    fn reach<const K: usize>(&self, mass: &ConstantMass, start: &AssembledState) -> (f64, f64) {
         let h = self.tables.nodes.to_array()[K - 1].abs();
         let (mut here, mut way) = (0.0_f64, 0.0_f64);
         for ((unit, q), v) in mass.units.iter().zip(&start.q).zip(&start.v) {
             here = here.max(unit * q.abs());
             way = way.max(unit * h * v.abs());
         }
-        crate::mechanics::reach(here, way)
+        (crate::mechanics::reach(here, way), here + way)
     }
 
     /// Overwrites the forces with `Fⱼ` at the nodes before the last, of the points after the constraints, with multipliers that take up the shares of

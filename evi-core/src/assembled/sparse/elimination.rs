@@ -16,6 +16,19 @@ pub(in super::super) struct Elimination {
     turns: Vec<u32>,
 }
 
+/// What the factorisation of a matrix of few nonzeros takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Effort {
+    /// Number of unknowns.
+    pub unknowns: usize,
+    /// Entries below the diagonal, those included that elimination fills in; 0 where the order is found with every factorisation.
+    pub below: usize,
+    /// Products of a factorisation of a symmetric matrix.
+    pub products: usize,
+    /// Whether rows are exchanged in every factorisation, by faer.
+    pub is_pivoted: bool,
+}
+
 /// Elimination would take too many products.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in super::super) struct TooMuchFill {
@@ -104,6 +117,16 @@ impl Elimination {
             std::cmp::Ordering::Equal => Place::Diagonal(row),
             std::cmp::Ordering::Greater => Place::Below(self.below(row, col)),
             std::cmp::Ordering::Less => Place::Above(self.below(col, row)),
+        }
+    }
+
+    /// What a factorisation takes.
+    pub(in super::super) fn effort(&self) -> Effort {
+        Effort {
+            unknowns: self.n_unknowns(),
+            below: self.n_below(),
+            products: self.targets.len() + self.n_below(),
+            is_pivoted: false,
         }
     }
 

@@ -1,9 +1,10 @@
 //! Elimination of large matrices with few nonzeros, in an order that is found once.
 //!
 //! In: which unknowns share an equation. Out: an [`Elimination`], the order and everything that depends on the pattern alone; with it matrices are
-//! factored in place, again and again, as [`General`] or [`Symmetric`] ones. On chains, trees and rings of bodies the cost is proportional to
+//! factored in place, again and again, as [`General`] or [`Symmetric`] ones, or as [`Blocked`] ones whose entries are small matrices. On chains, trees and rings of bodies the cost is proportional to
 //! their number.
 
+mod blocked;
 mod elimination;
 mod general;
 mod ordering;
@@ -11,6 +12,8 @@ mod ordering;
 mod pivoted;
 mod symmetric;
 
+pub(super) use blocked::Blocked;
+pub use elimination::Effort;
 pub(super) use elimination::{Elimination, TooMuchFill};
 pub(super) use general::General;
 #[cfg(feature = "sparse")]

@@ -54,6 +54,11 @@ impl Pivoted {
         })
     }
 
+    /// Number of unknowns.
+    pub(in super::super) fn n_unknowns(&self) -> usize {
+        self.starts.len() - 1
+    }
+
     /// Where the entry of a row and a column lies in [`entries_mut`](Self::entries_mut).
     pub(in super::super) fn place(&self, row: usize, col: usize) -> u32 {
         let range = self.starts[col]..self.starts[col + 1];

@@ -40,6 +40,11 @@ impl<T: Number> Symmetric<T> {
         self.below.fill(T::ZERO);
     }
 
+    /// The diagonal, unknown by unknown.
+    pub(in super::super) fn diagonal(&self) -> &[T] {
+        &self.diagonal
+    }
+
     /// Adds `a · b` to an entry.
     #[inline(always)]
     pub(in super::super) fn add<const FUSED: bool>(&mut self, place: SymmetricPlace, a: T, b: T) {

@@ -12,19 +12,19 @@ use crate::system::{MechanicalSystem, SystemReport};
 /// What a checkpoint is compared by with the simulation that is to resume it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(super) struct Fingerprint {
-    scene: String,
+pub(crate) struct Fingerprint {
+    pub(crate) scene: String,
     /// Digest of the equations as the user wrote them.
-    equations: u64,
+    pub(crate) equations: u64,
     /// Bits of every value that the equations take from the parameters.
-    constants: Vec<u64>,
+    pub(crate) constants: Vec<u64>,
     /// The type of the one-step map.
-    map: String,
+    pub(crate) map: String,
     /// Bits of the step size.
-    step_size: u64,
+    pub(crate) step_size: u64,
     /// Digest of the other numbers of the scheme.
-    scheme: u64,
-    tally: String,
+    pub(crate) scheme: u64,
+    pub(crate) tally: String,
 }
 
 impl Fingerprint {
@@ -93,20 +93,27 @@ impl Fingerprint {
 /// Of the names and equations of a scene.
 fn digest_of(scene: &SystemReport) -> u64 {
     let mut digest = Digest::default();
-    for names in [scene.coordinates, scene.constraints, scene.parameters, scene.inputs, scene.observables] {
-        digest.add(names.len() as u64);
-        names.iter().for_each(|name| digest.add_text(name));
-    }
-    for equation in scene.equations {
-        for text in [equation.name, equation.left.unicode, equation.right.unicode] {
-            digest.add_text(text);
-        }
-    }
+    scene.add_to(&mut digest);
     digest.value()
 }
 
+impl SystemReport {
+    /// Adds the names and equations of a scene.
+    pub(crate) fn add_to(&self, digest: &mut Digest) {
+        for names in [self.coordinates, self.constraints, self.parameters, self.inputs, self.observables] {
+            digest.add(names.len() as u64);
+            names.iter().for_each(|name| digest.add_text(name));
+        }
+        for equation in self.equations {
+            for text in [equation.name, equation.left.unicode, equation.right.unicode] {
+                digest.add_text(text);
+            }
+        }
+    }
+}
+
 /// A type as its user writes it: `EviStep<DoublePendulum, Linear, 1>`.
-fn without_paths(name: &str) -> String {
+pub(crate) fn without_paths(name: &str) -> String {
     let mut short = String::new();
     let mut word = String::new();
     for character in name.chars() {

@@ -5,7 +5,7 @@ mod resume_error;
 
 use std::vec::Vec;
 
-use self::fingerprint::Fingerprint;
+pub(crate) use self::fingerprint::{Fingerprint, without_paths};
 use super::{OneStep, Run, Scheme, Simulation, Tally};
 use crate::mechanics::{Mechanics, State};
 use crate::memory::{Digest, Memory, Recall, Record};
@@ -83,7 +83,31 @@ impl Checkpoint {
         digest.value()
     }
 
-    fn check_integrity(&self) -> Result<(), ResumeError> {
+    /// A run of the simulation that `belongs_to` tells, by the words of its parts.
+    pub(crate) fn new(
+        belongs_to: Fingerprint,
+        (start_time, steps): (f64, u64),
+        [state, map, tally]: [Vec<u64>; 3],
+    ) -> Self {
+        let start_time = start_time.to_bits();
+        let mut checkpoint =
+            Self { format: FORMAT, checksum: 0, belongs_to, start_time, steps, state, map, tally };
+        checkpoint.checksum = checkpoint.sum();
+        checkpoint
+    }
+
+    /// The words of state, map and tally, if the checkpoint is one of the simulation that `simulation` tells.
+    ///
+    /// # Errors
+    /// [`ResumeError`] for the first thing in which the simulation differs.
+    pub(crate) fn words_for(&self, simulation: Fingerprint) -> Result<[&[u64]; 3], ResumeError> {
+        self.belongs_to.check(simulation)?;
+        Ok([&self.state, &self.map, &self.tally])
+    }
+
+    /// # Errors
+    /// [`ResumeError`] for a checkpoint of another version, or one that has changed since it was taken.
+    pub(crate) fn check_integrity(&self) -> Result<(), ResumeError> {
         if self.format != FORMAT {
             return Err(ResumeError::Format { found: self.format, expected: FORMAT });
         }
@@ -98,18 +122,8 @@ impl<S: MechanicalSystem, M: OneStep<S>, T: Tally + Memory> Run<S, M, T> {
         let (map, scheme) = recorded(self.map());
         let (state, _) = recorded(self.state());
         let (tally, _) = recorded(self.tally());
-        let mut checkpoint = Checkpoint {
-            format: FORMAT,
-            checksum: 0,
-            belongs_to: Fingerprint::new::<S, M, T>(self.map(), scheme),
-            start_time: self.start_time().to_bits(),
-            steps: self.steps(),
-            state,
-            map,
-            tally,
-        };
-        checkpoint.checksum = checkpoint.sum();
-        checkpoint
+        let belongs_to = Fingerprint::new::<S, M, T>(self.map(), scheme);
+        Checkpoint::new(belongs_to, (self.start_time(), self.steps()), [state, map, tally])
     }
 }
 
@@ -135,17 +149,18 @@ impl<S: MechanicalSystem, F: Scheme<S>> Simulation<S, F> {
         checkpoint.check_integrity()?;
         let mut map = self.scheme().prepare(Mechanics::new(self.system()))?;
         let (_, scheme) = recorded(&map);
-        checkpoint.belongs_to.check(Fingerprint::new::<S, F::Step, T>(&map, scheme))?;
+        let fingerprint = Fingerprint::new::<S, F::Step, T>(&map, scheme);
+        let [of_state, of_map, of_tally] = checkpoint.words_for(fingerprint)?;
         let mut state = State::blank();
-        recall("state", &mut state, &checkpoint.state)?;
-        recall("map", &mut map, &checkpoint.map)?;
-        recall("tally", &mut tally, &checkpoint.tally)?;
+        recall("state", &mut state, of_state)?;
+        recall("map", &mut map, of_map)?;
+        recall("tally", &mut tally, of_tally)?;
         Ok(Run::resumed(map, state, f64::from_bits(checkpoint.start_time), checkpoint.steps, tally))
     }
 }
 
 /// The words of a memory, and the digest of its fixed numbers.
-fn recorded(memory: &impl Memory) -> (Vec<u64>, u64) {
+pub(crate) fn recorded(memory: &impl Memory) -> (Vec<u64>, u64) {
     let mut words = Vec::new();
     let mut sink = |word| words.push(word);
     let mut record = Record::to(&mut sink);
@@ -155,7 +170,7 @@ fn recorded(memory: &impl Memory) -> (Vec<u64>, u64) {
 }
 
 /// Overwrites a memory with `words`, which have to be as many as it takes.
-fn recall(part: &'static str, memory: &mut impl Memory, words: &[u64]) -> Result<(), ResumeError> {
+pub(crate) fn recall(part: &'static str, memory: &mut impl Memory, words: &[u64]) -> Result<(), ResumeError> {
     let mut expected = 0;
     let mut source = || {
         let word = words.get(expected).copied().unwrap_or_default();

@@ -32,8 +32,8 @@ pub(crate) use end::LaneEnd;
 pub(crate) use first_guess::FirstGuess;
 use gram::applied;
 use nodes::Nodes;
-pub(crate) use nodes::product;
 pub(super) use nodes::{from_start, nothing};
+pub(crate) use nodes::{product, product_of_stored};
 pub(crate) use reach::reach;
 use reach::unit;
 

@@ -18,8 +18,18 @@ pub(in crate::mechanics) fn nothing<A: Array<Lanes>>() -> A {
 /// The product of a table of `K` columns with a vector, added to `start`: two sums that do not wait for each other.
 #[inline(always)]
 pub(crate) fn product<const K: usize, const FUSED: bool>(columns: &Columns, x: Lanes, start: Lanes) -> Lanes {
+    product_of_stored::<K, FUSED>(columns, x.stored(), start)
+}
+
+/// The same for a vector that lies in memory, as those of large scenes do.
+#[inline(always)]
+pub(crate) fn product_of_stored<const K: usize, const FUSED: bool>(
+    columns: &Columns,
+    x: Lanes,
+    start: Lanes,
+) -> Lanes {
     const SUMS: usize = 2;
-    let x = x.stored().to_array();
+    let x = x.to_array();
     let mut sums = [start, Lanes::ZERO];
     for col in 0..K {
         let factor = Lanes::splat(x[col]);

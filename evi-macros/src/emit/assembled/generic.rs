@@ -4,7 +4,12 @@ use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 
 /// `GenericSystem` as loops over the generic copies of the elements.
-pub(super) fn generic(struct_name: &Ident, families: &[Ident], n_coordinates: &TokenStream) -> TokenStream {
+pub(super) fn generic(
+    struct_name: &Ident,
+    families: &[Ident],
+    n_coordinates: &TokenStream,
+    n_inputs: usize,
+) -> TokenStream {
     quote! {
         #[allow(unused, trivial_numeric_casts, clippy::all)]
         #[automatically_derived]
@@ -16,6 +21,10 @@ pub(super) fn generic(struct_name: &Ident, families: &[Ident], n_coordinates: &T
 
             fn n_coordinates(&self) -> usize {
                 #n_coordinates
+            }
+
+            fn n_inputs(&self) -> usize {
+                #n_inputs
             }
 
             fn n_constraints(&self) -> usize {

@@ -5,6 +5,7 @@
 mod elements;
 mod generic;
 mod names;
+mod report;
 
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
@@ -14,12 +15,13 @@ use super::implementation::{Solvers, mechanical_system};
 use super::indices;
 use super::subject::{Subject, element_name};
 use crate::expr::Graph;
-use crate::model::{Assembled, Family, Model, Place, coordinate_entries};
+use crate::model::{Assembled, Family, Model, Place, WrittenEquation, coordinate_entries, input_names};
 use crate::schedule::Programs;
 use crate::syntax::{Coordinate, Declaration};
 use elements::{indices_of_element, number_of_elements};
 use generic::generic;
 use names::{constraint_name, coordinate_name};
+use report::names_and_report;
 
 /// Everything that the derive emits for a scene of loops.
 pub(crate) fn assembled(
@@ -27,25 +29,31 @@ pub(crate) fn assembled(
     assembled: &Assembled,
     graph: &Graph,
     programs: &[Programs],
+    written: &[WrittenEquation],
 ) -> TokenStream {
     let struct_name = &declaration.name;
     let bounds = indices::bounds(&assembled.bounds);
     let elements = std::iter::zip(&assembled.elements, programs)
         .enumerate()
         .map(|(number, (model, programs))| element(declaration, number, model, graph, programs));
+    let observed = assembled.observed.iter().map(|(_, family)| family);
     let families: Vec<TokenStream> = assembled
         .families
         .iter()
+        .chain(observed)
         .enumerate()
         .map(|(number, family)| {
             self::family(declaration, number, family, &assembled.elements[family.element])
         })
         .collect();
-    let names: Vec<Ident> = (0..families.len()).map(family_name).collect();
+    let mut names: Vec<Ident> = (0..families.len()).map(family_name).collect();
+    let terms = names.split_off(assembled.families.len());
+    let quantities = assembled.observed.iter().map(|(quantity, _)| quantity);
+    let names_and_report = names_and_report(declaration, assembled, written);
     let n_coordinates = sum(coordinate_entries(declaration).iter().map(count));
     let coordinate_name = coordinate_name(declaration);
     let constraint_name = constraint_name(&assembled.families);
-    let generic = generic(struct_name, &names, &n_coordinates);
+    let generic = generic(struct_name, &names, &n_coordinates, input_names(declaration).count());
     quote! {
         const _: () = {
             #bounds
@@ -59,11 +67,16 @@ pub(crate) fn assembled(
                     #n_coordinates
                 }
 
+                #names_and_report
                 #coordinate_name
                 #constraint_name
 
                 fn visit_families<V: ::evi_core::__private::FamilyVisitor<Self>>(&self, visitor: &mut V) {
                     #(visitor.family::<#names>();)*
+                }
+
+                fn visit_observed<V: ::evi_core::__private::ObservedVisitor<Self>>(&self, visitor: &mut V) {
+                    #(visitor.term::<#terms>(#quantities);)*
                 }
             }
 
