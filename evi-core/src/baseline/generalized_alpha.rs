@@ -216,7 +216,7 @@ impl<S: MechanicalSystem> GeneralizedAlphaStep<S> {
     ) -> Result<End<S>, StepError> {
         let h = self.h;
         let mechanics = self.mechanics();
-        let constants = mechanics.constants.as_ref();
+        let constants = &mechanics.constants;
         let Coefficients { alpha_m, alpha_f, beta, gamma } = self.coefficients;
         let per_average = self.coefficients.per_acceleration();
         let per = PerAcceleration { q: h * h * beta * per_average, v: h * gamma * per_average };
@@ -246,12 +246,12 @@ impl<S: MechanicalSystem> GeneralizedAlphaStep<S> {
             let End { q, v, .. } = end(solution.clone());
             let at = MotionPoint { t, q, v, acceleration: &acceleration, inputs: &state.inputs };
             let (mut residual, mut kkt) = self.equations.linearize(&at, per);
-            let (constraints, jacobian) = S::constraint_derivatives(&mechanics.constants, t, &at.q);
-            let multipliers = &solution.as_ref()[S::N_COORDINATES..];
-            mechanics.add_constraint_force(jacobian.as_ref(), multipliers, residual.as_mut());
+            let (constraints, jacobian) = S::constraint_derivatives(constants, t, &at.q);
+            let multipliers = Array::from_fn(|c| solution[constraint_index::<S>(c)]);
+            mechanics.add_constraint_force(&jacobian, &multipliers, &mut residual);
             constraint_residual = largest_magnitude(constraints.as_ref().iter().copied());
-            kkt.set_upper_jacobian(constants, jacobian.as_ref());
-            kkt.set_lower_jacobian(constants, jacobian.as_ref());
+            kkt.set_upper_jacobian(constants, &jacobian);
+            kkt.set_lower_jacobian(constants, &jacobian);
             let mut change = unknowns::<S>(|i| residual[i], |c| constraints[c] / per.q);
             let moved = |x: f64| per.q * x;
             // All that is added up to `q₁`: where it is damped, it is smaller than its terms.

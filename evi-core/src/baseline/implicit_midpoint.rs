@@ -4,7 +4,7 @@ use super::equations_of_motion::{EquationsOfMotion, MotionPoint, PerAcceleration
 use super::prediction::Prediction;
 use crate::array::Array;
 use crate::integrator::{IterationFailure, OneStep, Scheme, StepError, Symmetric, Tally};
-use crate::linear::{largest_magnitude, unknowns};
+use crate::linear::{constraint_index, largest_magnitude, unknowns};
 use crate::mechanics::{Mechanics, State};
 use crate::memory::memory;
 use crate::newton::{self, Converged};
@@ -125,7 +125,7 @@ impl<S: MechanicalSystem> ImplicitMidpointStep<S> {
     ) -> Result<S::PerUnknown<f64>, StepError> {
         let h = self.h;
         let mechanics = self.mechanics();
-        let constants = mechanics.constants.as_ref();
+        let constants = &mechanics.constants;
         let per = PerAcceleration { q: 0.25 * h * h, v: 0.5 * h };
         let t = state.t + 0.5 * h;
         let mut constraint_residual = 0.0;
@@ -140,17 +140,16 @@ impl<S: MechanicalSystem> ImplicitMidpointStep<S> {
             if S::N_CONSTRAINTS > 0 {
                 let rates = self.equations.moving_jacobian(&at);
                 let jacobian: S::PerJacobianEntry<f64> = Array::from_fn(|k| rates[k].value);
-                let multipliers = &solution.as_ref()[S::N_COORDINATES..];
-                mechanics.add_constraint_force(jacobian.as_ref(), multipliers, residual.as_mut());
-                curvature = S::constraint_curvature(&mechanics.constants, t, &at.q, &at.v);
-                for entry in S::STRUCTURE.jacobian.q {
-                    curvature[entry.row] +=
-                        entry.value(constants, jacobian.as_ref()) * acceleration[entry.col];
-                }
+                let multipliers = Array::from_fn(|c| solution[constraint_index::<S>(c)]);
+                mechanics.add_constraint_force(&jacobian, &multipliers, &mut residual);
+                curvature = S::constraint_curvature(constants, t, &at.q, &at.v);
+                S::for_each_slope(constants, &jacobian, |row, col, slope| {
+                    curvature[row] += slope * acceleration[col];
+                });
                 // ∂γ/∂v = 2 D G.
                 let lower: S::PerJacobianEntry<f64> = Array::from_fn(|k| rates[k].value + h * rates[k].rate);
-                kkt.set_upper_jacobian(constants, jacobian.as_ref());
-                kkt.set_lower_jacobian(constants, lower.as_ref());
+                kkt.set_upper_jacobian(constants, &jacobian);
+                kkt.set_lower_jacobian(constants, &lower);
             }
             constraint_residual = largest_magnitude(curvature.as_ref().iter().copied());
             let kkt = kkt.factor().map_err(|matrix| IterationFailure::Singular { correction, matrix })?;

@@ -93,7 +93,7 @@ impl<S: MechanicalSystem> RattleStep<S> {
         let mechanics = self.mechanics();
         let (_, jacobian) = S::constraint_derivatives(&mechanics.constants, t, q);
         let directions = self.drift.directions(&jacobian);
-        let mut impulse = mechanics.constraint_rate(jacobian.as_ref(), v);
+        let mut impulse = mechanics.constraint_rate(&jacobian, v);
         let gram = S::GramFactors::factor(&mechanics.gram_matrix::<AsScene>(&jacobian, &directions))?;
         if gram.is_fallback() {
             tally.count_fallback();

@@ -243,7 +243,7 @@ fn kick_after<S: MechanicalSystem>(
     let mut change = S::PerCoordinate::<f64>::from_fn(|i| residual[i] - inertial[i]);
     let impulse = S::PerConstraint::<f64>::from_fn(|c| update[constraint_index::<S>(c)]);
     let mechanics = equations.mechanics();
-    mechanics.subtract_constraint_force(start.jacobian.as_ref(), impulse.as_ref(), change.as_mut());
+    mechanics.subtract_constraint_force(&start.jacobian, &impulse, &mut change);
     for i in 0..S::N_COORDINATES {
         solution.node_kick[i] += change[i];
     }

@@ -422,7 +422,7 @@ fn check_velocity<S: MechanicalSystem>(
 ) -> Result<(), StartError> {
     let residual = mechanics.hidden_constraint_residual_at(t, q, v);
     let (_, jacobian) = S::constraint_derivatives(&mechanics.constants, t, q);
-    let rate = mechanics.constraint_rate(jacobian.as_ref(), v);
+    let rate = mechanics.constraint_rate(&jacobian, v);
     let gradient_norms = mechanics.gradient_norms(&jacobian);
     for c in 0..S::N_CONSTRAINTS {
         let is_round_off = (h * rate[c]).abs() <= ROUND_OFF * gradient_norms[c] * norm(q.as_ref());

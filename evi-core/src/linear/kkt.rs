@@ -64,18 +64,26 @@ impl<S: MechanicalSystem> Kkt<S> {
 
     /// Sets `G₀ᵀ` from the Jacobian at the start of a step.
     #[inline]
-    pub(crate) fn set_upper_jacobian(&mut self, constants: &[f64], jacobian: &[f64]) {
-        for entry in S::STRUCTURE.jacobian.q {
-            self.rows[entry.col][constraint_index::<S>(entry.row)] = entry.value(constants, jacobian);
-        }
+    pub(crate) fn set_upper_jacobian(
+        &mut self,
+        constants: &S::PerConstant<f64>,
+        jacobian: &S::PerJacobianEntry<f64>,
+    ) {
+        S::for_each_slope(constants, jacobian, |row, col, slope| {
+            self.rows[col][constraint_index::<S>(row)] = slope;
+        });
     }
 
     /// Sets `G₁` from the Jacobian at the end of a step.
     #[inline]
-    pub(crate) fn set_lower_jacobian(&mut self, constants: &[f64], jacobian: &[f64]) {
-        for entry in S::STRUCTURE.jacobian.q {
-            self.rows[constraint_index::<S>(entry.row)][entry.col] = entry.value(constants, jacobian);
-        }
+    pub(crate) fn set_lower_jacobian(
+        &mut self,
+        constants: &S::PerConstant<f64>,
+        jacobian: &S::PerJacobianEntry<f64>,
+    ) {
+        S::for_each_slope(constants, jacobian, |row, col, slope| {
+            self.rows[constraint_index::<S>(row)][col] = slope;
+        });
     }
 
     /// Factors the matrix by the scene's own elimination, scaled where that gives up.
@@ -315,7 +323,7 @@ mod tests {
         let (_, hessian) =
             Chain::lagrangian_derivatives(&mechanics.constants, 0.0, &CONFIGURATION, &[0.0; 4]);
         let (_, jacobian) = Chain::constraint_derivatives(&mechanics.constants, 0.0, &CONFIGURATION);
-        mechanics.mass_kkt(hessian.as_ref(), jacobian.as_ref())
+        mechanics.mass_kkt(&hessian, &jacobian)
     }
 
     /// Solves for a known solution whose entries are alike in the natural units of each unknown.

@@ -18,18 +18,24 @@ pub(crate) const NOTHING: f64 = -0.0;
 impl<S: MechanicalSystem> Mechanics<S> {
     /// Adds `Gᵀ x` to `sum`.
     #[inline]
-    pub(crate) fn add_constraint_force(&self, jacobian: &[f64], x: &[f64], sum: &mut [f64]) {
-        for entry in S::STRUCTURE.jacobian.q {
-            sum[entry.col] += entry.value(self.constants.as_ref(), jacobian) * x[entry.row];
-        }
+    pub(crate) fn add_constraint_force(
+        &self,
+        jacobian: &S::PerJacobianEntry<f64>,
+        x: &S::PerConstraint<f64>,
+        sum: &mut S::PerCoordinate<f64>,
+    ) {
+        S::for_each_slope(&self.constants, jacobian, |row, col, slope| sum[col] += slope * x[row]);
     }
 
     /// Subtracts `Gᵀ x` from `sum`.
     #[inline]
-    pub(crate) fn subtract_constraint_force(&self, jacobian: &[f64], x: &[f64], sum: &mut [f64]) {
-        for entry in S::STRUCTURE.jacobian.q {
-            sum[entry.col] -= entry.value(self.constants.as_ref(), jacobian) * x[entry.row];
-        }
+    pub(crate) fn subtract_constraint_force(
+        &self,
+        jacobian: &S::PerJacobianEntry<f64>,
+        x: &S::PerConstraint<f64>,
+        sum: &mut S::PerCoordinate<f64>,
+    ) {
+        S::for_each_slope(&self.constants, jacobian, |row, col, slope| sum[col] -= slope * x[row]);
     }
 
     /// `B Gᵀ` for a symmetric matrix `B`, a row per constraint.
@@ -40,17 +46,16 @@ impl<S: MechanicalSystem> Mechanics<S> {
         matrix: &CoordinateMatrix<S, C>,
     ) -> Directions<S> {
         let mut directions: Directions<S> = Array::from_fn(|_| Array::from_fn(|_| 0.0));
-        for entry in S::STRUCTURE.jacobian.q {
-            let slope = entry.value(self.constants.as_ref(), jacobian.as_ref());
-            let direction = &mut directions[entry.row];
+        S::for_each_slope(&self.constants, jacobian, |row, col, slope| {
+            let direction = &mut directions[row];
             if C::IS_DIAGONAL {
-                direction[entry.col] = matrix.at(entry.col, entry.col) * slope;
+                direction[col] = matrix.at(col, col) * slope;
             } else {
                 for i in 0..S::N_COORDINATES {
-                    direction[i] += matrix.at(i, entry.col) * slope;
+                    direction[i] += matrix.at(i, col) * slope;
                 }
             }
-        }
+        });
         directions
     }
 
@@ -61,25 +66,44 @@ impl<S: MechanicalSystem> Mechanics<S> {
         jacobian: &S::PerJacobianEntry<f64>,
         directions: &Directions<S>,
     ) -> Gram<S> {
-        // Terms of even and of odd columns: two short chains of additions instead of a long one.
+        /// Few constraints wait for their matrix; to add up matrices of many, most of whose entries are zero, takes longer than the wait.
+        const MOST_IN_HALVES: usize = 4;
         let nothing = || -> Gram<S> { Array::from_fn(|_| Array::from_fn(|_| NOTHING)) };
-        let (mut even, mut odd) = (nothing(), nothing());
-        for entry in S::STRUCTURE.jacobian.q {
-            let slope = entry.value(self.constants.as_ref(), jacobian.as_ref());
-            let gram = if entry.col % 2 == 0 { &mut even } else { &mut odd };
-            if C::IS_DIAGONAL {
-                for other in S::STRUCTURE.jacobian.q {
-                    if other.col == entry.col {
-                        gram[entry.row][other.row] += slope * directions[other.row][other.col];
-                    }
-                }
-            } else {
-                for col in 0..S::N_CONSTRAINTS {
-                    gram[entry.row][col] += slope * directions[col][entry.col];
-                }
-            }
+        if S::N_CONSTRAINTS > MOST_IN_HALVES {
+            let mut gram = nothing();
+            self.for_each_gram_term::<C>(jacobian, directions, |row, other, _, term| {
+                gram[row][other] += term
+            });
+            return gram;
         }
+        // Terms of even and of odd columns: two short chains of additions instead of a long one.
+        let (mut even, mut odd) = (nothing(), nothing());
+        self.for_each_gram_term::<C>(jacobian, directions, |row, other, col, term| {
+            let gram = if col % 2 == 0 { &mut even } else { &mut odd };
+            gram[row][other] += term;
+        });
         Array::from_fn(|row| Array::from_fn(|col| even[row][col] + odd[row][col]))
+    }
+
+    /// Calls `add(row, other, col, G[row][col] D[col][other])` for every term of `G D`.
+    #[inline(always)]
+    fn for_each_gram_term<C: Coupling<S>>(
+        &self,
+        jacobian: &S::PerJacobianEntry<f64>,
+        directions: &Directions<S>,
+        mut add: impl FnMut(usize, usize, usize, f64),
+    ) {
+        if C::IS_DIAGONAL {
+            S::for_each_slope_pair(&self.constants, jacobian, |row, other, col, slope| {
+                add(row, other, col, slope * directions[other][col]);
+            });
+        } else {
+            S::for_each_slope(&self.constants, jacobian, |row, col, slope| {
+                for other in 0..S::N_CONSTRAINTS {
+                    add(row, other, col, slope * directions[other][col]);
+                }
+            });
+        }
     }
 
     /// `Σᵢ |G_ci| rᵢ` for a reach `rᵢ ≥ 0` of every coordinate.
@@ -90,10 +114,9 @@ impl<S: MechanicalSystem> Mechanics<S> {
         reach: &S::PerCoordinate<f64>,
     ) -> S::PerConstraint<f64> {
         let mut scale = S::PerConstraint::<f64>::from_fn(|_| NOTHING);
-        for entry in S::STRUCTURE.jacobian.q {
-            let slope = entry.value(self.constants.as_ref(), jacobian.as_ref());
-            scale[entry.row] += slope.abs() * reach[entry.col];
-        }
+        S::for_each_slope(&self.constants, jacobian, |row, col, slope| {
+            scale[row] += slope.abs() * reach[col]
+        });
         scale
     }
 
@@ -123,9 +146,7 @@ impl<S: MechanicalSystem> Mechanics<S> {
         q: &S::PerCoordinate<f64>,
     ) -> S::PerConstraint<f64> {
         let mut reach = S::PerConstraint::<f64>::from_fn(|_| NOTHING);
-        for entry in S::STRUCTURE.jacobian.q {
-            reach[entry.row] += entry.value(self.constants.as_ref(), jacobian.as_ref()) * q[entry.col];
-        }
+        S::for_each_slope(&self.constants, jacobian, |row, col, slope| reach[row] += slope * q[col]);
         reach
     }
 
@@ -144,19 +165,16 @@ impl<S: MechanicalSystem> Mechanics<S> {
     /// `‖G_c‖`, the Euclidean norm of every constraint's gradient.
     pub(crate) fn gradient_norms(&self, jacobian: &S::PerJacobianEntry<f64>) -> S::PerConstraint<f64> {
         let mut squares = S::PerConstraint::<f64>::from_fn(|_| NOTHING);
-        for entry in S::STRUCTURE.jacobian.q {
-            let slope = entry.value(self.constants.as_ref(), jacobian.as_ref());
-            squares[entry.row] += slope * slope;
-        }
+        S::for_each_slope(&self.constants, jacobian, |row, _, slope| squares[row] += slope * slope);
         Array::from_fn(|c| Scalar::sqrt(squares[c]))
     }
 
     /// `∂φ/∂t`.
     #[inline(always)]
-    pub(crate) fn constraint_time_rate(&self, jacobian: &[f64]) -> S::PerConstraint<f64> {
+    pub(crate) fn constraint_time_rate(&self, jacobian: &S::PerJacobianEntry<f64>) -> S::PerConstraint<f64> {
         let mut rate = S::PerConstraint::<f64>::from_fn(|_| NOTHING);
         for entry in S::STRUCTURE.jacobian.t {
-            rate[entry.row] += entry.value(self.constants.as_ref(), jacobian);
+            rate[entry.row] += entry.value(self.constants.as_ref(), jacobian.as_ref());
         }
         rate
     }
@@ -165,15 +183,15 @@ impl<S: MechanicalSystem> Mechanics<S> {
     #[inline]
     pub(crate) fn constraint_rate(
         &self,
-        jacobian: &[f64],
+        jacobian: &S::PerJacobianEntry<f64>,
         v: &S::PerCoordinate<f64>,
     ) -> S::PerConstraint<f64> {
         let mut even = self.constraint_time_rate(jacobian);
         let mut odd = S::PerConstraint::<f64>::from_fn(|_| NOTHING);
-        for entry in S::STRUCTURE.jacobian.q {
-            let rate = if entry.col % 2 == 0 { &mut even } else { &mut odd };
-            rate[entry.row] += entry.value(self.constants.as_ref(), jacobian) * v[entry.col];
-        }
+        S::for_each_slope(&self.constants, jacobian, |row, col, slope| {
+            let rate = if col % 2 == 0 { &mut even } else { &mut odd };
+            rate[row] += slope * v[col];
+        });
         Array::from_fn(|c| even[c] + odd[c])
     }
 

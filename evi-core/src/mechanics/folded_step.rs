@@ -68,7 +68,7 @@ impl<S: MechanicalSystem, F: Interpolant<S>> FoldedStep<S, F> {
                 action.for_each_second_derivative(
                     node,
                     weight,
-                    hessian.as_ref(),
+                    &hessian,
                     first,
                     second,
                     |row, col, value| matrix[row][col] += sign * value,

@@ -225,8 +225,10 @@ impl<S: MechanicalSystem, T: NodalTables<K>, const K: usize> GalerkinAction<S, T
             self.subtract_second_derivatives(node, hessian.as_ref(), &mut matrix);
             let (constraint, jacobian) = S::constraint_derivatives(constants, t, &q);
             if node < K {
-                let impulse = points.impulses[node].as_ref();
-                self.mechanics.add_constraint_force(jacobian.as_ref(), impulse, residual[node].as_mut());
+                let impulse = &points.impulses[node];
+                S::for_each_slope(constants, &jacobian, |row, col, slope| {
+                    residual[node][col] += slope * impulse[row];
+                });
             }
             for entry in S::STRUCTURE.jacobian.q {
                 let slope = entry.number(constants.as_ref(), jacobian.as_ref());
@@ -336,8 +338,7 @@ impl<S: MechanicalSystem, T: NodalTables<K>, const K: usize> GalerkinAction<S, T
             let mut pull = S::PerCoordinate::<f64>::from_fn(|_| 0.0);
             if node < K {
                 let (_, jacobian) = S::constraint_derivatives(constants, t, &q);
-                let impulse = points.impulses[node].as_ref();
-                self.mechanics.add_constraint_force(jacobian.as_ref(), impulse, pull.as_mut());
+                self.mechanics.add_constraint_force(&jacobian, &points.impulses[node], &mut pull);
             }
             for i in 0..S::N_COORDINATES {
                 let constant_rate = self.tables.table(i).rates(node).start;

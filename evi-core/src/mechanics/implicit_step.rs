@@ -89,7 +89,7 @@ pub(crate) trait ImplicitStep<S: MechanicalSystem> {
     ) -> S::PerUnknown<f64> {
         let (inertial, fixed) = (self.inertia_times(difference), self.start_row(start));
         let mut row = S::PerCoordinate::<f64>::from_fn(|i| inertial[i] + fixed[i] - node_kick[i]);
-        self.mechanics().add_constraint_force(start.jacobian.as_ref(), impulse.as_ref(), row.as_mut());
+        self.mechanics().add_constraint_force(&start.jacobian, impulse, &mut row);
         unknowns::<S>(|i| row[i], |c| at_end[c])
     }
 
@@ -110,9 +110,9 @@ pub(crate) trait ImplicitStep<S: MechanicalSystem> {
         let mut kkt = Kkt::zero();
         solution.node_kick = self.node_kick(start, &solution.difference, Some(&mut kkt));
         let (residual, jacobian) = self.constraints_at_end(start, &solution.difference);
-        let constants = self.mechanics().constants.as_ref();
-        kkt.set_upper_jacobian(constants, start.jacobian.as_ref());
-        kkt.set_lower_jacobian(constants, jacobian.as_ref());
+        let constants = &self.mechanics().constants;
+        kkt.set_upper_jacobian(constants, &start.jacobian);
+        kkt.set_lower_jacobian(constants, &jacobian);
         (self.residual(start, solution, &residual), kkt)
     }
 

@@ -59,13 +59,9 @@ impl<S: MechanicalSystem> LeapfrogStep<S> {
         let at_rest = Array::from_fn(|_| 0.0);
         let (_, hessian) = S::lagrangian_derivatives(&mechanics.constants, t, q, &at_rest);
         let mut product = S::PerCoordinate::<f64>::from_fn(|_| 0.0);
-        for entry in S::STRUCTURE.hessian.qq {
-            let value = self.half_h * entry.value(mechanics.constants.as_ref(), hessian.as_ref());
-            product[entry.row] += value * x[entry.col];
-            if entry.row != entry.col {
-                product[entry.col] += value * x[entry.row];
-            }
-        }
+        S::for_each_qq(&mechanics.constants, &hessian, |row, col, value| {
+            product[row] += self.half_h * value * x[col];
+        });
         product
     }
 }

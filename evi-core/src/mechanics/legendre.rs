@@ -114,11 +114,7 @@ impl<S: MechanicalSystem> ConstantLegendre<S> {
         expected: &S::PerConstraint<f64>,
         mut momentum: P,
     ) -> (S::PerCoordinate<f64>, P) {
-        mechanics.subtract_constraint_force(
-            jacobian.as_ref(),
-            expected.as_ref(),
-            momentum.terms_mut().as_mut(),
-        );
+        mechanics.subtract_constraint_force(jacobian, expected, momentum.terms_mut());
         let removed = self.remove_rest(mechanics, gram, jacobian, &mut momentum);
         let v = self.velocity(momentum.value().borrow());
         if removed > LARGEST_REST * self.doubled_energy(momentum.value().borrow(), &v) {
@@ -150,11 +146,11 @@ impl<S: MechanicalSystem> ConstantLegendre<S> {
         jacobian: &S::PerJacobianEntry<f64>,
         momentum: &mut impl Sum<S>,
     ) -> f64 {
-        let rate = mechanics.constraint_rate(jacobian.as_ref(), &self.velocity(momentum.value().borrow()));
+        let rate = mechanics.constraint_rate(jacobian, &self.velocity(momentum.value().borrow()));
         let mut rest = rate.clone();
         let factor = gram.solve_up_to_factor(&mut rest);
         let mut force = S::PerCoordinate::<f64>::from_fn(|_| NOTHING);
-        mechanics.add_constraint_force(jacobian.as_ref(), rest.as_ref(), force.as_mut());
+        mechanics.add_constraint_force(jacobian, &rest, &mut force);
         for i in 0..S::N_COORDINATES {
             momentum.terms_mut()[i] -= factor * force[i];
         }

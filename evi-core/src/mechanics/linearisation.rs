@@ -163,7 +163,7 @@ impl<S: MechanicalSystem> Mechanics<S> {
         let mut gradient = S::PerCoordinate::<f64>::from_fn(|i| -force[i]);
         if S::N_CONSTRAINTS > 0 {
             let (_, jacobian) = S::constraint_derivatives(&self.constants, t, q);
-            self.add_constraint_force(jacobian.as_ref(), multipliers.as_ref(), gradient.as_mut());
+            self.add_constraint_force(&jacobian, multipliers, &mut gradient);
         }
         gradient
     }
@@ -257,8 +257,8 @@ impl<S: MechanicalSystem> Mechanics<S> {
                     kkt.add_block(row, col, stiffness[row][col]);
                 }
             }
-            kkt.set_upper_jacobian(self.constants.as_ref(), jacobian.as_ref());
-            kkt.set_lower_jacobian(self.constants.as_ref(), jacobian.as_ref());
+            kkt.set_upper_jacobian(&self.constants, &jacobian);
+            kkt.set_lower_jacobian(&self.constants, &jacobian);
             let kkt = kkt.factor_densely().map_err(|_| NoEquilibrium::Neutral)?;
             let mut correction = unknowns::<S>(|i| -gradient[i], |c| -residual[c]);
             kkt.solve(&mut correction);

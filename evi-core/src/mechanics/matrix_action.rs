@@ -257,7 +257,7 @@ impl<S: MechanicalSystem, const K: usize> ImplicitStep<S> for MatrixAction<S, K>
         let fixed = self.start_row(start);
         let at_nodes = self.impulses(start, difference, None);
         let mut p = S::PerCoordinate::<f64>::from_fn(|i| -fixed[i] - at_nodes.start[i]);
-        self.mechanics.subtract_constraint_force(start.jacobian.as_ref(), impulse.as_ref(), p.as_mut());
+        self.mechanics.subtract_constraint_force(&start.jacobian, impulse, &mut p);
         let end = Array::from_fn(|i| start.q[i] + difference[i]);
         let displacement = self.part.displacement(&end);
         let linear = times::<S>(&self.kick, &displacement);

@@ -107,7 +107,7 @@ impl<S: MechanicalSystem> Mechanics<S> {
     ) -> S::PerUnknown<f64> {
         let (_, hessian) = S::lagrangian_derivatives(&self.constants, t, q, v);
         let (_, jacobian) = S::constraint_derivatives(&self.constants, t, q);
-        self.mass_kkt(hessian.as_ref(), jacobian.as_ref()).scale()
+        self.mass_kkt(&hessian, &jacobian).scale()
     }
 
     /// The largest entry of `D ∂²L/∂q² D` with `D = diag 1/√|Mᵢᵢ|`: about the square of the fastest rate of the free motion.
@@ -137,17 +137,15 @@ impl<S: MechanicalSystem> Mechanics<S> {
 
     /// The saddle-point matrix of mass matrix and constraints, `[M Gᵀ; G 0]`.
     #[inline]
-    pub(crate) fn mass_kkt(&self, hessian: &[f64], jacobian: &[f64]) -> Kkt<S> {
+    pub(crate) fn mass_kkt(
+        &self,
+        hessian: &S::PerHessianEntry<f64>,
+        jacobian: &S::PerJacobianEntry<f64>,
+    ) -> Kkt<S> {
         let mut kkt = Kkt::zero();
-        for entry in S::STRUCTURE.hessian.vv {
-            let mass = entry.value(self.constants.as_ref(), hessian);
-            kkt.add_block(entry.row, entry.col, mass);
-            if entry.row != entry.col {
-                kkt.add_block(entry.col, entry.row, mass);
-            }
-        }
-        kkt.set_upper_jacobian(self.constants.as_ref(), jacobian);
-        kkt.set_lower_jacobian(self.constants.as_ref(), jacobian);
+        S::for_each_vv(&self.constants, hessian, |row, col, mass| kkt.add_block(row, col, mass));
+        kkt.set_upper_jacobian(&self.constants, jacobian);
+        kkt.set_lower_jacobian(&self.constants, jacobian);
         kkt
     }
 }

@@ -58,13 +58,13 @@ impl<S: MechanicalSystem> Mechanics<S> {
         let mut impulse = S::PerConstraint::<f64>::from_fn(|_| 0.0);
         let mut correct = || -> Result<f64, ProjectionError> {
             let (gradient, hessian) = S::lagrangian_derivatives(&self.constants, t, q, &v);
-            let kkt = self.mass_kkt(hessian.as_ref(), jacobian.as_ref());
+            let kkt = self.mass_kkt(&hessian, &jacobian);
             tally.see_matrix(|| kkt.conditioning());
             let kkt = kkt.factor()?;
             if kkt.is_fallback() {
                 tally.count_fallback();
             }
-            let rate = self.constraint_rate(jacobian.as_ref(), &v);
+            let rate = self.constraint_rate(&jacobian, &v);
             let mut correction = unknowns::<S>(|i| unprojected[i] - gradient.momentum[i], |c| -rate[c]);
             kkt.solve(&mut correction);
             for i in 0..S::N_COORDINATES {
@@ -83,7 +83,7 @@ impl<S: MechanicalSystem> Mechanics<S> {
             newton::iterate(|_| correct())?;
         }
         let mut constraint_momentum = S::PerCoordinate::<f64>::from_fn(|_| 0.0);
-        self.add_constraint_force(jacobian.as_ref(), impulse.as_ref(), constraint_momentum.as_mut());
+        self.add_constraint_force(&jacobian, &impulse, &mut constraint_momentum);
         for i in 0..S::N_COORDINATES {
             momentum.terms_mut()[i] -= constraint_momentum[i];
         }
@@ -101,7 +101,7 @@ impl<S: MechanicalSystem> Mechanics<S> {
         v: &mut S::PerCoordinate<f64>,
         impulse: &mut S::PerConstraint<f64>,
     ) {
-        let rate = self.constraint_rate(jacobian.as_ref(), v);
+        let rate = self.constraint_rate(jacobian, v);
         let mut refinement = unknowns::<S>(|_| 0.0, |c| -rate[c]);
         kkt.solve(&mut refinement);
         for i in 0..S::N_COORDINATES {
@@ -131,14 +131,14 @@ impl<S: MechanicalSystem> Mechanics<S> {
         let mut multipliers = S::PerConstraint::<f64>::from_fn(|_| 0.0);
         newton::iterate(|_| -> Result<f64, ProjectionError> {
             let (residual, jacobian) = S::constraint_derivatives(&self.constants, t, &q);
-            let mut kkt = self.mass_kkt(hessian.as_ref(), jacobian.as_ref());
+            let mut kkt = self.mass_kkt(&hessian, &jacobian);
             self.for_each_constraint_curvature(t, &q, &multipliers, |row, col, curvature| {
                 kkt.add_block(row, col, curvature);
             });
             let kkt = kkt.factor_densely()?;
             let displacement = S::PerCoordinate::<f64>::from_fn(|i| q[i] - start[i]);
-            let mut pull = self.mass_times(hessian.as_ref(), &displacement);
-            self.add_constraint_force(jacobian.as_ref(), multipliers.as_ref(), pull.as_mut());
+            let mut pull = self.mass_times(&hessian, &displacement);
+            self.add_constraint_force(&jacobian, &multipliers, &mut pull);
             let mut correction = unknowns::<S>(|i| -pull[i], |c| -residual[c]);
             kkt.solve(&mut correction);
             for i in 0..S::N_COORDINATES {
@@ -153,15 +153,13 @@ impl<S: MechanicalSystem> Mechanics<S> {
     }
 
     /// `M x`.
-    fn mass_times(&self, hessian: &[f64], x: &S::PerCoordinate<f64>) -> S::PerCoordinate<f64> {
+    fn mass_times(
+        &self,
+        hessian: &S::PerHessianEntry<f64>,
+        x: &S::PerCoordinate<f64>,
+    ) -> S::PerCoordinate<f64> {
         let mut product = S::PerCoordinate::<f64>::from_fn(|_| 0.0);
-        for entry in S::STRUCTURE.hessian.vv {
-            let mass = entry.value(self.constants.as_ref(), hessian);
-            product[entry.row] += mass * x[entry.col];
-            if entry.row != entry.col {
-                product[entry.col] += mass * x[entry.row];
-            }
-        }
+        S::for_each_vv(&self.constants, hessian, |row, col, mass| product[row] += mass * x[col]);
         product
     }
 
@@ -238,7 +236,7 @@ impl<S: MechanicalSystem> Mechanics<S> {
         }
         let (_, jacobian) = S::constraint_derivatives(&self.constants, t, q);
         let curvature = S::constraint_curvature(&self.constants, t, q, v);
-        let kkt = self.mass_kkt(hessian.as_ref(), jacobian.as_ref()).factor()?;
+        let kkt = self.mass_kkt(&hessian, &jacobian).factor()?;
         if kkt.is_fallback() {
             tally.count_fallback();
         }

@@ -63,7 +63,7 @@ impl<S: MechanicalSystem> Mechanics<S> {
         v: &S::PerCoordinate<f64>,
     ) -> S::PerConstraint<f64> {
         let (_, jacobian) = S::constraint_derivatives(&self.constants, t, q);
-        let rate = self.constraint_rate(jacobian.as_ref(), v);
+        let rate = self.constraint_rate(&jacobian, v);
         let speed = norm(v.as_ref());
         let gradient_norms = self.gradient_norms(&jacobian);
         let mut scale = S::PerConstraint::<f64>::from_fn(|i| gradient_norms[i] * speed);

@@ -65,7 +65,7 @@ impl<S: MechanicalSystem, const K: usize> SeparableAction<S, K> {
             let (LagrangianGradient { momentum, .. }, hessian) =
                 S::lagrangian_derivatives(constants, t, x, v);
             let add = |matrix: &mut Rows<S>, sign: f64, first, second| {
-                action.for_each_inertia(node, hessian.as_ref(), first, second, |row, col, value| {
+                action.for_each_inertia(node, &hessian, first, second, |row, col, value| {
                     matrix[row][col] += sign * value;
                 });
             };
@@ -144,17 +144,13 @@ impl<S: MechanicalSystem, const K: usize> SeparableAction<S, K> {
         &self,
         mechanics: &Mechanics<S>,
         node: usize,
-        hessian: &[f64],
+        hessian: &S::PerHessianEntry<f64>,
         kkt: &mut Kkt<S>,
     ) {
         let slopes = &self.slopes[node];
-        for entry in S::STRUCTURE.hessian.qq {
-            let value = entry.value(mechanics.constants.as_ref(), hessian);
-            kkt.add_block(entry.row, entry.col, slopes[entry.row][entry.col] * value);
-            if entry.row != entry.col {
-                kkt.add_block(entry.col, entry.row, slopes[entry.col][entry.row] * value);
-            }
-        }
+        S::for_each_qq(&mechanics.constants, hessian, |row, col, value| {
+            kkt.add_block(row, col, slopes[row][col] * value);
+        });
     }
 
     /// Adds the product of a matrix that couples what the mass couples with `x`.

@@ -153,7 +153,7 @@ impl<S: MechanicalSystem, T: InterpolationTable, const K: usize> DiscreteLagrang
         } else {
             self.joint_momentum(start, difference)
         };
-        self.mechanics.subtract_constraint_force(start.jacobian.as_ref(), impulse.as_ref(), gain.as_mut());
+        self.mechanics.subtract_constraint_force(&start.jacobian, impulse, &mut gain);
         gain
     }
 
@@ -221,7 +221,7 @@ impl<S: MechanicalSystem, T: InterpolationTable, const K: usize> DiscreteLagrang
 
     /// Subtracts this node's part of `D₁D₂L_d` without what is folded.
     #[inline(always)]
-    fn subtract_d2d1(&self, node: usize, weight: f64, hessian: &[f64], kkt: &mut Kkt<S>) {
+    fn subtract_d2d1(&self, node: usize, weight: f64, hessian: &S::PerHessianEntry<f64>, kkt: &mut Kkt<S>) {
         if SeparableAction::<S, K>::EXISTS {
             self.separable.subtract_slopes(&self.mechanics, node, hessian, kkt);
         } else {
@@ -258,23 +258,19 @@ impl<S: MechanicalSystem, T: InterpolationTable, const K: usize> DiscreteLagrang
         &self,
         node: usize,
         weight: f64,
-        hessian: &[f64],
+        hessian: &S::PerHessianEntry<f64>,
         first: Slot,
         second: Slot,
         mut add: impl FnMut(usize, usize, f64),
     ) {
-        let constants = self.mechanics.constants.as_ref();
-        let pattern = S::STRUCTURE.hessian;
-        for entry in pattern.qq {
-            let value = self.multiplied_weights[node] * entry.value(constants, hessian);
-            let (row, col) = self.coefficients_of(node, entry.row, entry.col);
-            add(entry.row, entry.col, (first.position)(&row) * value * (second.position)(&col));
-            if entry.row != entry.col {
-                add(entry.col, entry.row, (first.position)(&col) * value * (second.position)(&row));
-            }
-        }
-        for entry in pattern.vq {
-            let value = weight * entry.value(constants, hessian);
+        let constants = &self.mechanics.constants;
+        S::for_each_qq(constants, hessian, |row, col, value| {
+            let value = self.multiplied_weights[node] * value;
+            let (a, b) = self.coefficients_of(node, row, col);
+            add(row, col, (first.position)(&a) * value * (second.position)(&b));
+        });
+        for entry in S::STRUCTURE.hessian.vq {
+            let value = weight * entry.value(constants.as_ref(), hessian.as_ref());
             let (row, col) = self.coefficients_of(node, entry.row, entry.col);
             add(entry.row, entry.col, (first.rate)(&row) * value * (second.position)(&col));
             // ∂²L/∂q∂v is the transpose: its row is the coordinate, its column the velocity.
@@ -288,19 +284,16 @@ impl<S: MechanicalSystem, T: InterpolationTable, const K: usize> DiscreteLagrang
     pub(crate) fn for_each_inertia(
         &self,
         node: usize,
-        hessian: &[f64],
+        hessian: &S::PerHessianEntry<f64>,
         first: Slot,
         second: Slot,
         mut add: impl FnMut(usize, usize, f64),
     ) {
-        for entry in S::STRUCTURE.hessian.vv {
-            let value = self.divided_weights[node] * entry.value(self.mechanics.constants.as_ref(), hessian);
-            let (row, col) = self.coefficients_of(node, entry.row, entry.col);
-            add(entry.row, entry.col, (first.rate)(&row) * value * (second.rate)(&col));
-            if entry.row != entry.col {
-                add(entry.col, entry.row, (first.rate)(&col) * value * (second.rate)(&row));
-            }
-        }
+        S::for_each_vv(&self.mechanics.constants, hessian, |row, col, value| {
+            let value = self.divided_weights[node] * value;
+            let (a, b) = self.coefficients_of(node, row, col);
+            add(row, col, (first.rate)(&a) * value * (second.rate)(&b));
+        });
     }
 
     /// The interpolant's coefficients at a node for a coordinate.
@@ -370,7 +363,7 @@ impl<S: MechanicalSystem, T: InterpolationTable, const K: usize> ImplicitStep<S>
                     let derivatives = self.mechanics.add_force_with_derivatives(at, &mut gradient.force);
                     self.subtract_force_derivatives(node, weight, &derivatives, kkt);
                 }
-                self.subtract_d2d1(node, weight, hessian.as_ref(), kkt);
+                self.subtract_d2d1(node, weight, &hessian, kkt);
                 gradient
             } else {
                 self.gradient(at)

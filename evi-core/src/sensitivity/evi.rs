@@ -81,16 +81,16 @@ impl<S: MechanicalSystem> Matrix<S> {
 
     /// `K = [A G₀ᵀ; G₁ 0]`.
     fn forward(mut self, constants: &S::PerConstant<f64>) -> Kkt<S> {
-        self.block.set_upper_jacobian(constants.as_ref(), self.at_start.as_ref());
-        self.block.set_lower_jacobian(constants.as_ref(), self.at_end.as_ref());
+        self.block.set_upper_jacobian(constants, &self.at_start);
+        self.block.set_lower_jacobian(constants, &self.at_end);
         self.block
     }
 
     /// `Kᵀ = [Aᵀ G₁ᵀ; G₀ 0]`: a matrix of the same pattern.
     fn backward(mut self, constants: &S::PerConstant<f64>) -> Kkt<S> {
         self.block.transpose_block();
-        self.block.set_upper_jacobian(constants.as_ref(), self.at_end.as_ref());
-        self.block.set_lower_jacobian(constants.as_ref(), self.at_start.as_ref());
+        self.block.set_upper_jacobian(constants, &self.at_end);
+        self.block.set_lower_jacobian(constants, &self.at_start);
         self.block
     }
 }

@@ -32,7 +32,7 @@ pub(super) fn note_kicks<S: MechanicalSystem, F: KickDriftKick<S>>(
     let mut half_way = S::PerCoordinate::<f64>::from_fn(|i| start.p[i] + kick[i]);
     if S::N_CONSTRAINTS > 0 {
         let (_, jacobian) = S::constraint_derivatives(&mechanics.constants, start.t, &start.q);
-        mechanics.subtract_constraint_force(jacobian.as_ref(), impulse.as_ref(), half_way.as_mut());
+        mechanics.subtract_constraint_force(&jacobian, &impulse, &mut half_way);
     }
     let kick = free.end_kick(mechanics, end.t, &end.q);
     let arriving = Array::from_fn(|i| half_way[i] + kick[i]);
@@ -104,7 +104,7 @@ pub(super) fn push_over_kicks<S: MechanicalSystem, F: KickDriftKick<S>>(
                 }
             }
             multipliers.solve(&mut leaving);
-            mechanics.subtract_constraint_force(at_start.as_ref(), leaving.as_ref(), half_way.as_mut());
+            mechanics.subtract_constraint_force(&at_start, &leaving, &mut half_way);
         }
         let drift = free.drift().times(|i| half_way[i]);
         let q = S::PerCoordinate::<f64>::from_fn(|i| tangent.q[i] + drift[i]);
@@ -149,7 +149,7 @@ pub(super) fn pull_over_kicks<S: MechanicalSystem, F: KickDriftKick<S>>(
         let drift = free.drift().times(|i| by_drift[i]);
         pull = rate(mechanics, &at_start, &Array::from_fn(|i| by_arriving[i] + drift[i]));
         multipliers.solve(&mut pull);
-        mechanics.subtract_constraint_force(at_end.as_ref(), pull.as_ref(), by_drift.as_mut());
+        mechanics.subtract_constraint_force(at_end, &pull, &mut by_drift);
     }
     let drift = free.drift().times(|i| by_drift[i]);
     let by_momentum = S::PerCoordinate::<f64>::from_fn(|i| by_arriving[i] + drift[i]);

@@ -61,7 +61,7 @@ impl<'a, S: MechanicalSystem> Landing<'a, S> {
             return Ok(Self { state, mass: None, jacobian, solver, mechanics });
         }
         let (_, mass) = S::lagrangian_derivatives(constants, state.t, &state.q, &state.v);
-        let kkt: Kkt<S> = mechanics.mass_kkt(mass.as_ref(), jacobian.as_ref());
+        let kkt: Kkt<S> = mechanics.mass_kkt(&mass, &jacobian);
         let solver = Solver::Kkt(kkt.factor().map_err(singular)?);
         Ok(Self { state, mass: Some(mass), jacobian, solver, mechanics })
     }

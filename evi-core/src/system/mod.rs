@@ -6,12 +6,18 @@
 
 mod classification;
 mod forces;
+mod operations;
+mod pattern;
 mod report;
+mod structure;
 mod wrapped;
 
 pub use classification::{Block, ConstraintStructure, HessianBlocks, MassShape, Potential};
 pub use forces::{ForceStructure, HasFrequencies};
+pub use operations::{KernelOperations, Operations};
+pub use pattern::{Entry, EntryValue, HessianPattern, JacobianPattern};
 pub use report::{Equation, Formula, KernelReport, SystemReport};
+pub use structure::{Dependence, Structure};
 pub(crate) use wrapped::unfolded_scene_of_inner;
 
 use crate::array::Array;
@@ -135,6 +141,56 @@ pub trait MechanicalSystem: Sized {
         v: &Self::PerCoordinate<T>,
     ) -> Self::PerConstraint<T>;
 
+    /// Calls `visit(row, col, G[row][col])` for every entry of the Jacobian that is not zero, in the order of its pattern. The derive writes the calls
+    /// out, so that inlined they know their places: products with `G` are straight-line code.
+    #[inline(always)]
+    fn for_each_slope<T: Copy>(
+        constants: &Self::PerConstant<T>,
+        jacobian: &Self::PerJacobianEntry<T>,
+        mut visit: impl FnMut(usize, usize, T),
+    ) {
+        for entry in Self::STRUCTURE.jacobian.q {
+            visit(entry.row, entry.col, entry.value(constants.as_ref(), jacobian.as_ref()));
+        }
+    }
+
+    /// Calls `visit(row, other, col, G[row][col])` for every pair of entries of the Jacobian in one column, the second of them in the row `other`: what
+    /// the entry `(row, other)` of `G D Gᵀ` with a diagonal `D` is the sum of. Written out as [`for_each_slope`](Self::for_each_slope) is.
+    #[inline(always)]
+    fn for_each_slope_pair<T: Copy>(
+        constants: &Self::PerConstant<T>,
+        jacobian: &Self::PerJacobianEntry<T>,
+        mut visit: impl FnMut(usize, usize, usize, T),
+    ) {
+        for entry in Self::STRUCTURE.jacobian.q {
+            let slope = entry.value(constants.as_ref(), jacobian.as_ref());
+            for other in Self::STRUCTURE.jacobian.q.iter().filter(|other| other.col == entry.col) {
+                visit(entry.row, other.row, entry.col, slope);
+            }
+        }
+    }
+
+    /// Calls `visit(row, col, ∂²L/∂v[row]∂v[col])` for every entry that is not zero, above the diagonal too. Written out as
+    /// [`for_each_slope`](Self::for_each_slope) is.
+    #[inline(always)]
+    fn for_each_vv<T: Copy>(
+        constants: &Self::PerConstant<T>,
+        hessian: &Self::PerHessianEntry<T>,
+        visit: impl FnMut(usize, usize, T),
+    ) {
+        pattern::for_each_of_both(Self::STRUCTURE.hessian.vv, constants.as_ref(), hessian.as_ref(), visit);
+    }
+
+    /// Calls `visit(row, col, ∂²L/∂q[row]∂q[col])` in the same way.
+    #[inline(always)]
+    fn for_each_qq<T: Copy>(
+        constants: &Self::PerConstant<T>,
+        hessian: &Self::PerHessianEntry<T>,
+        visit: impl FnMut(usize, usize, T),
+    ) {
+        pattern::for_each_of_both(Self::STRUCTURE.hessian.qq, constants.as_ref(), hessian.as_ref(), visit);
+    }
+
     /// `f(t, q, v, u)`: the generalized forces that are no derivatives of `L`, so that
     /// `d/dt ∂L/∂v − ∂L/∂q + Gᵀλ = f`. The sum of the items `force` and of `−∂D/∂v` for the item `dissipation`; zero
     /// without such items.
@@ -180,289 +236,4 @@ pub struct LagrangianGradient<S: MechanicalSystem, T: Clone> {
     pub force: S::PerCoordinate<T>,
     /// `∂L/∂v`: the generalized momentum.
     pub momentum: S::PerCoordinate<T>,
-}
-
-/// What the compiler knows about a scene's equations.
-#[derive(Clone, Copy, Debug)]
-pub struct Structure {
-    /// Nonzero second derivatives of `L`.
-    pub hessian: HessianPattern,
-    /// Nonzero derivatives of `φ`.
-    pub jacobian: JacobianPattern,
-    /// What each block of the Hessian depends on.
-    pub blocks: HessianBlocks,
-    /// On what the mass matrix `∂²L/∂v²` depends.
-    pub mass: Dependence,
-    /// Pattern of the mass matrix.
-    pub mass_shape: MassShape,
-    /// The potential as a function of `q`.
-    pub potential: Potential,
-    /// Whether `∂L/∂v(t, q, 0) = 0`: a system at rest has no momentum.
-    pub momentum_vanishes_at_rest: bool,
-    /// On what `L` depends.
-    pub lagrangian: Dependence,
-    /// On what `φ` depends.
-    pub constraints: Dependence,
-    /// Each constraint by itself.
-    pub each_constraint: &'static [ConstraintStructure],
-    /// Pairs of constraints that share a coordinate, `(smaller, larger)` index.
-    pub constraint_graph: &'static [(usize, usize)],
-    /// Forces that are no derivatives of `L`.
-    pub forces: ForceStructure,
-    /// Operations of each kernel of `L` and `φ`.
-    pub operations: KernelOperations,
-}
-
-impl Structure {
-    /// Stands where the derive found mistakes and the equations are not known.
-    #[doc(hidden)]
-    pub const UNKNOWN: Self = {
-        const NOTHING: Dependence = Dependence { on_q: false, on_v: false, on_t: false };
-        const NONE: Operations = Operations::NONE;
-        Self {
-            hessian: HessianPattern { qq: &[], vq: &[], vv: &[], vt: &[] },
-            jacobian: JacobianPattern { q: &[], t: &[] },
-            blocks: HessianBlocks { qq: Block::Zero, vq: Block::Zero, vv: Block::Zero, vt: Block::Zero },
-            mass: NOTHING,
-            mass_shape: MassShape::Diagonal,
-            potential: Potential::Zero,
-            momentum_vanishes_at_rest: false,
-            lagrangian: NOTHING,
-            constraints: NOTHING,
-            each_constraint: &[],
-            constraint_graph: &[],
-            forces: ForceStructure::NONE,
-            operations: KernelOperations {
-                constants: NONE,
-                lagrangian: NONE,
-                lagrangian_gradient: NONE,
-                lagrangian_derivatives: NONE,
-                constraints: NONE,
-                constraint_derivatives: NONE,
-                constraint_curvature: NONE,
-            },
-        }
-    };
-
-    /// Whether `L` is a polynomial of degree at most two in `v`, so that the Legendre transform is linear.
-    pub const fn is_quadratic_in_velocity(&self) -> bool {
-        !self.mass.on_v
-    }
-
-    /// Whether no second derivative of `L` couples two coordinates: every matrix of a step without other forces is diagonal.
-    pub const fn is_uncoupled(&self) -> bool {
-        is_diagonal(self.hessian.qq) && is_diagonal(self.hessian.vq) && is_diagonal(self.hessian.vv)
-    }
-
-    /// Whether nothing holds a coordinate: neither a constraint nor a force depends on it, and `L` by a uniform force at most. Its velocity may be
-    /// coupled to anything.
-    pub const fn is_free(&self, coordinate: usize) -> bool {
-        !(has_column(self.hessian.qq, coordinate)
-            || has_row(self.hessian.qq, coordinate)
-            || has_column(self.hessian.vq, coordinate)
-            || has_column(self.jacobian.q, coordinate)
-            || has_column(self.forces.q, coordinate))
-    }
-
-    /// Whether every constraint is a polynomial of degree at most two in `q`, and does not depend on time.
-    pub const fn has_quadratic_constraints(&self) -> bool {
-        let mut row = 0;
-        while row < self.each_constraint.len() {
-            if !self.each_constraint[row].is_quadratic || self.each_constraint[row].on_t {
-                return false;
-            }
-            row += 1;
-        }
-        true
-    }
-
-    /// Whether neither `L` nor `φ` nor a force depends on time.
-    pub const fn is_autonomous(&self) -> bool {
-        !(self.lagrangian.on_t || self.constraints.on_t || self.forces.on.on_t)
-    }
-
-    /// Whether `L = ½ vᵀ M v − V(t, q)` with constant `M`.
-    pub const fn is_separable_with_constant_mass(&self) -> bool {
-        self.mass.is_constant() && self.hessian.vq.is_empty() && self.hessian.vt.is_empty()
-    }
-}
-
-/// The variables that a quantity depends on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Dependence {
-    /// Depends on the coordinates.
-    pub on_q: bool,
-    /// Depends on the velocities.
-    pub on_v: bool,
-    /// Depends on time.
-    pub on_t: bool,
-}
-
-impl Dependence {
-    /// Whether the quantity depends on parameters alone.
-    pub const fn is_constant(&self) -> bool {
-        !(self.on_q || self.on_v || self.on_t)
-    }
-}
-
-/// The structurally nonzero second derivatives of `L`, block by block.
-#[derive(Clone, Copy, Debug)]
-pub struct HessianPattern {
-    /// `∂²L/∂q²`, lower triangle (`row ≥ col`).
-    pub qq: &'static [Entry],
-    /// `∂²L/∂v∂q`: row of `v`, column of `q`.
-    pub vq: &'static [Entry],
-    /// `∂²L/∂v²`, lower triangle.
-    pub vv: &'static [Entry],
-    /// `∂²L/∂v∂t`: row of `v`, column 0.
-    pub vt: &'static [Entry],
-}
-
-impl HessianPattern {
-    /// Whether every second derivative of `L` is constant: `L` is a polynomial of degree two in `(q, v)`.
-    pub const fn is_constant(&self) -> bool {
-        is_constant(self.qq) && is_constant(self.vq) && is_constant(self.vv) && is_constant(self.vt)
-    }
-}
-
-const fn has_column(entries: &[Entry], col: usize) -> bool {
-    let mut k = 0;
-    while k < entries.len() {
-        if entries[k].col == col {
-            return true;
-        }
-        k += 1;
-    }
-    false
-}
-
-const fn has_row(entries: &[Entry], row: usize) -> bool {
-    let mut k = 0;
-    while k < entries.len() {
-        if entries[k].row == row {
-            return true;
-        }
-        k += 1;
-    }
-    false
-}
-
-const fn is_diagonal(entries: &[Entry]) -> bool {
-    let mut k = 0;
-    while k < entries.len() {
-        if entries[k].row != entries[k].col {
-            return false;
-        }
-        k += 1;
-    }
-    true
-}
-
-const fn is_constant(entries: &[Entry]) -> bool {
-    let mut k = 0;
-    while k < entries.len() {
-        if let EntryValue::Varying(_) = entries[k].value {
-            return false;
-        }
-        k += 1;
-    }
-    true
-}
-
-/// The structurally nonzero derivatives of `φ`.
-#[derive(Clone, Copy, Debug)]
-pub struct JacobianPattern {
-    /// `G = ∂φ/∂q`: row of the constraint, column of the coordinate.
-    pub q: &'static [Entry],
-    /// `∂φ/∂t`: row of the constraint, column 0.
-    pub t: &'static [Entry],
-}
-
-/// Place and origin of one structurally nonzero matrix entry.
-#[derive(Clone, Copy, Debug)]
-pub struct Entry {
-    /// Row in the block.
-    pub row: usize,
-    /// Column in the block.
-    pub col: usize,
-    /// Where its value comes from.
-    pub value: EntryValue,
-}
-
-impl Entry {
-    /// Whether a kernel computes it.
-    pub const fn is_varying(&self) -> bool {
-        matches!(self.value, EntryValue::Varying(_))
-    }
-
-    /// The entry's value, from the scene's constants or from what its kernel returned.
-    #[inline]
-    pub fn value<T: Copy>(&self, constants: &[T], varying: &[T]) -> T {
-        match self.value {
-            EntryValue::Constant(slot) => constants[slot],
-            EntryValue::Varying(index) => varying[index],
-        }
-    }
-
-    /// The same of numbers, and none where there is no value: for loops over entries that are not unrolled, where the optimiser does not find out that
-    /// there is one.
-    #[inline]
-    pub(crate) fn number(&self, constants: &[f64], varying: &[f64]) -> f64 {
-        let value = match self.value {
-            EntryValue::Constant(slot) => constants.get(slot),
-            EntryValue::Varying(index) => varying.get(index),
-        };
-        value.copied().unwrap_or(f64::NAN)
-    }
-}
-
-/// Where the value of a matrix entry comes from.
-#[derive(Clone, Copy, Debug)]
-pub enum EntryValue {
-    /// Constant of the scene, at this index.
-    Constant(usize),
-    /// Varying entry, at this index of the kernel's output.
-    Varying(usize),
-}
-
-/// Operations of each emitted kernel.
-#[derive(Clone, Copy, Debug)]
-pub struct KernelOperations {
-    /// [`MechanicalSystem::constants`].
-    pub constants: Operations,
-    /// [`MechanicalSystem::lagrangian`].
-    pub lagrangian: Operations,
-    /// [`MechanicalSystem::lagrangian_gradient`].
-    pub lagrangian_gradient: Operations,
-    /// [`MechanicalSystem::lagrangian_derivatives`].
-    pub lagrangian_derivatives: Operations,
-    /// [`MechanicalSystem::constraints`].
-    pub constraints: Operations,
-    /// [`MechanicalSystem::constraint_derivatives`].
-    pub constraint_derivatives: Operations,
-    /// [`MechanicalSystem::constraint_curvature`].
-    pub constraint_curvature: Operations,
-}
-
-/// Operations of straight-line code, by kind.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Operations {
-    /// Additions and subtractions.
-    pub additions: usize,
-    /// Multiplications.
-    pub multiplications: usize,
-    /// Divisions.
-    pub divisions: usize,
-    /// Elementary functions and square roots.
-    pub functions: usize,
-}
-
-impl Operations {
-    /// Nothing to compute.
-    pub const NONE: Self = Self { additions: 0, multiplications: 0, divisions: 0, functions: 0 };
-
-    /// All operations together.
-    pub const fn total(&self) -> usize {
-        self.additions + self.multiplications + self.divisions + self.functions
-    }
 }

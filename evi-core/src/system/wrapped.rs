@@ -102,6 +102,42 @@ macro_rules! unfolded_scene_of_inner {
             S::constraint_curvature(constants, t, q, v)
         }
 
+        #[inline(always)]
+        fn for_each_slope<T: Copy>(
+            constants: &Self::PerConstant<T>,
+            jacobian: &Self::PerJacobianEntry<T>,
+            visit: impl FnMut(usize, usize, T),
+        ) {
+            S::for_each_slope(constants, jacobian, visit)
+        }
+
+        #[inline(always)]
+        fn for_each_slope_pair<T: Copy>(
+            constants: &Self::PerConstant<T>,
+            jacobian: &Self::PerJacobianEntry<T>,
+            visit: impl FnMut(usize, usize, usize, T),
+        ) {
+            S::for_each_slope_pair(constants, jacobian, visit)
+        }
+
+        #[inline(always)]
+        fn for_each_vv<T: Copy>(
+            constants: &Self::PerConstant<T>,
+            hessian: &Self::PerHessianEntry<T>,
+            visit: impl FnMut(usize, usize, T),
+        ) {
+            S::for_each_vv(constants, hessian, visit)
+        }
+
+        #[inline(always)]
+        fn for_each_qq<T: Copy>(
+            constants: &Self::PerConstant<T>,
+            hessian: &Self::PerHessianEntry<T>,
+            visit: impl FnMut(usize, usize, T),
+        ) {
+            S::for_each_qq(constants, hessian, visit)
+        }
+
         #[inline]
         fn forces<T: $crate::scalar::Scalar>(
             constants: &Self::PerConstant<T>,

@@ -10,7 +10,7 @@ use super::kernel::Writer;
 use super::report::{report, source};
 use super::storage::{Sizes, associated_types, dense_solvers};
 use super::subject::Subject;
-use super::{generic_graph, indices};
+use super::{generic_graph, indices, patterns};
 use crate::expr::{Dependence, ExprId, Graph};
 use crate::model::{Model, WrittenEquation};
 use crate::schedule::{ConstantSlots, Operations, Program, Programs};
@@ -92,6 +92,7 @@ pub(super) fn mechanical_system(
         kernels.constraint_curvature(&programs.constraint_curvature),
     ];
     let kernels: TokenStream = kernels.into_iter().chain(optional.into_iter().flatten()).collect();
+    let loops = patterns::loops(&programs.structure);
     let system = |report: TokenStream| {
         quote! {
             const _: () = {
@@ -112,6 +113,7 @@ pub(super) fn mechanical_system(
                     }
 
                     #kernels
+                    #loops
                 }
 
                 #frequencies

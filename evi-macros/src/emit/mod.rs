@@ -11,6 +11,7 @@ mod generic_graph;
 mod implementation;
 mod indices;
 mod kernel;
+mod patterns;
 mod pieces;
 mod report;
 mod storage;

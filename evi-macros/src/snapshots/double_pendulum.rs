@@ -578,6 +578,47 @@ const _: () = {
             let x3 = (T::from_f64(2.0) * (x1 * x1)) + (T::from_f64(2.0) * (x2 * x2));
             [x0, x3]
         }
+        #[inline(always)]
+        fn for_each_slope<T: ::core::marker::Copy>(
+            c: &Self::PerConstant<T>,
+            g: &Self::PerJacobianEntry<T>,
+            mut visit: impl ::core::ops::FnMut(usize, usize, T),
+        ) {
+            visit(0usize, 0usize, g[0usize]);
+            visit(0usize, 1usize, g[1usize]);
+            visit(1usize, 0usize, g[2usize]);
+            visit(1usize, 1usize, g[3usize]);
+            visit(1usize, 2usize, g[4usize]);
+            visit(1usize, 3usize, g[5usize]);
+        }
+        #[inline(always)]
+        fn for_each_slope_pair<T: ::core::marker::Copy>(
+            c: &Self::PerConstant<T>,
+            g: &Self::PerJacobianEntry<T>,
+            mut visit: impl ::core::ops::FnMut(usize, usize, usize, T),
+        ) {
+            visit(0usize, 0usize, 0usize, g[0usize]);
+            visit(0usize, 1usize, 0usize, g[0usize]);
+            visit(0usize, 0usize, 1usize, g[1usize]);
+            visit(0usize, 1usize, 1usize, g[1usize]);
+            visit(1usize, 0usize, 0usize, g[2usize]);
+            visit(1usize, 1usize, 0usize, g[2usize]);
+            visit(1usize, 0usize, 1usize, g[3usize]);
+            visit(1usize, 1usize, 1usize, g[3usize]);
+            visit(1usize, 1usize, 2usize, g[4usize]);
+            visit(1usize, 1usize, 3usize, g[5usize]);
+        }
+        #[inline(always)]
+        fn for_each_vv<T: ::core::marker::Copy>(
+            c: &Self::PerConstant<T>,
+            h: &Self::PerHessianEntry<T>,
+            mut visit: impl ::core::ops::FnMut(usize, usize, T),
+        ) {
+            visit(0usize, 0usize, c[0usize]);
+            visit(1usize, 1usize, c[0usize]);
+            visit(2usize, 2usize, c[1usize]);
+            visit(3usize, 3usize, c[1usize]);
+        }
     }
     #[automatically_derived]
     #[allow(unused, non_snake_case, trivial_numeric_casts, clippy::all)]

@@ -329,6 +329,22 @@ const _: () = {
         ) -> Self::PerConstraint<T> {
             []
         }
+        #[inline(always)]
+        fn for_each_vv<T: ::core::marker::Copy>(
+            c: &Self::PerConstant<T>,
+            h: &Self::PerHessianEntry<T>,
+            mut visit: impl ::core::ops::FnMut(usize, usize, T),
+        ) {
+            visit(0usize, 0usize, c[1usize]);
+        }
+        #[inline(always)]
+        fn for_each_qq<T: ::core::marker::Copy>(
+            c: &Self::PerConstant<T>,
+            h: &Self::PerHessianEntry<T>,
+            mut visit: impl ::core::ops::FnMut(usize, usize, T),
+        ) {
+            visit(0usize, 0usize, c[0usize]);
+        }
     }
     #[automatically_derived]
     #[allow(unused, non_snake_case, trivial_numeric_casts, clippy::all)]

@@ -502,6 +502,23 @@ const _: () = {
             let x0 = v[1usize] * (q[0usize] * u[0usize]);
             [x0]
         }
+        #[inline(always)]
+        fn for_each_vv<T: ::core::marker::Copy>(
+            c: &Self::PerConstant<T>,
+            h: &Self::PerHessianEntry<T>,
+            mut visit: impl ::core::ops::FnMut(usize, usize, T),
+        ) {
+            visit(0usize, 0usize, c[1usize]);
+            visit(1usize, 1usize, c[1usize]);
+        }
+        #[inline(always)]
+        fn for_each_qq<T: ::core::marker::Copy>(
+            c: &Self::PerConstant<T>,
+            h: &Self::PerHessianEntry<T>,
+            mut visit: impl ::core::ops::FnMut(usize, usize, T),
+        ) {
+            visit(0usize, 0usize, c[0usize]);
+        }
     }
     #[automatically_derived]
     #[allow(unused_variables, trivial_numeric_casts, clippy::all)]

@@ -474,6 +474,36 @@ const _: () = {
                     + ((v[1usize] * v[1usize]) * T::from_f64(2.0)));
             [x0]
         }
+        #[inline(always)]
+        fn for_each_slope<T: ::core::marker::Copy>(
+            c: &Self::PerConstant<T>,
+            g: &Self::PerJacobianEntry<T>,
+            mut visit: impl ::core::ops::FnMut(usize, usize, T),
+        ) {
+            visit(0usize, 0usize, g[0usize]);
+            visit(0usize, 1usize, g[1usize]);
+            visit(0usize, 2usize, g[2usize]);
+        }
+        #[inline(always)]
+        fn for_each_slope_pair<T: ::core::marker::Copy>(
+            c: &Self::PerConstant<T>,
+            g: &Self::PerJacobianEntry<T>,
+            mut visit: impl ::core::ops::FnMut(usize, usize, usize, T),
+        ) {
+            visit(0usize, 0usize, 0usize, g[0usize]);
+            visit(0usize, 0usize, 1usize, g[1usize]);
+            visit(0usize, 0usize, 2usize, g[2usize]);
+        }
+        #[inline(always)]
+        fn for_each_vv<T: ::core::marker::Copy>(
+            c: &Self::PerConstant<T>,
+            h: &Self::PerHessianEntry<T>,
+            mut visit: impl ::core::ops::FnMut(usize, usize, T),
+        ) {
+            visit(0usize, 0usize, c[0usize]);
+            visit(1usize, 1usize, c[0usize]);
+            visit(2usize, 2usize, c[0usize]);
+        }
     }
     #[automatically_derived]
     #[allow(unused, non_snake_case, trivial_numeric_casts, clippy::all)]

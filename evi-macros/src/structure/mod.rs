@@ -8,6 +8,7 @@ mod classify;
 pub(crate) use classify::{Block, Classification, ConstraintStructure, MassShape, Potential};
 
 mod elimination;
+mod matching;
 
 use std::collections::BTreeSet;
 

@@ -107,7 +107,7 @@ impl<S: MechanicalSystem, const K: usize> NodePasses<S> for LanePasses<S, K> {
             .map_err(|cause| StepError::Projection { t, cause: ProjectionError::Singular(cause) })?;
         gram.solve(&mut shares);
         let mut pull = S::PerCoordinate::<f64>::filled(0.0);
-        mechanics.subtract_constraint_force(jacobian.as_ref(), shares.as_ref(), pull.as_mut());
+        mechanics.subtract_constraint_force(&jacobian, &shares, &mut pull);
         position = position.plus(&self.step.inverse_mass_times(&pull));
         let (q, lost_q) = position.split();
         let (left, jacobian) = S::constraint_derivatives(constants, t, &q);
@@ -119,7 +119,7 @@ impl<S: MechanicalSystem, const K: usize> NodePasses<S> for LanePasses<S, K> {
         let slight = SLIGHT * largest_magnitude(q.as_ref().iter().copied());
         let reach = Array::from_fn(|i| q[i].abs() + end.difference[i].abs() + slight);
         let speeds = Array::from_fn(|i| v[i].abs() + (end.difference[i].abs() + slight) / self.h.abs());
-        let rate = mechanics.constraint_rate(jacobian.as_ref(), &v);
+        let rate = mechanics.constraint_rate(&jacobian, &v);
         for (reach, residual) in [(&reach, &left), (&speeds, &rate)] {
             let beside = mechanics.share_beside(&jacobian, reach, residual);
             // Written so that a NaN is refused.

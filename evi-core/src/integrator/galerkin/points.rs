@@ -85,7 +85,7 @@ impl<S: MechanicalSystem, const K: usize> NodePasses<S> for PointSteps<S, K> {
                 let (residual, jacobian) = S::constraint_derivatives(&mechanics.constants, t, q);
                 let (_, hessian) = S::lagrangian_derivatives(&mechanics.constants, t, q, &end.velocity);
                 let kkt = mechanics
-                    .mass_kkt(hessian.as_ref(), jacobian.as_ref())
+                    .mass_kkt(&hessian, &jacobian)
                     .factor()
                     .map_err(|matrix| failed(matrix.into()))?;
                 let mut correction = unknowns::<S>(|_| 0.0, |c| -residual[c]);

@@ -36,8 +36,8 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'_, S, F, R>
                 (none, landing)
             }
         };
-        let (jacobian, terms) = (self.jacobian.as_ref(), self.momentum.terms_mut().as_mut());
-        self.mechanics.subtract_constraint_force(jacobian, landing.impulse.as_ref(), terms);
+        let terms = self.momentum.terms_mut();
+        self.mechanics.subtract_constraint_force(&self.jacobian, &landing.impulse, terms);
         landing.impulse = Array::from_fn(|c| expected[c] + landing.impulse[c]);
         let at_end = history.expected_end_impulse(&landing.impulse);
         self.land(landing, &at_end, history, state, tally)

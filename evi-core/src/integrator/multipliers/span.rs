@@ -56,7 +56,7 @@ impl<'a, S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'a, S, F
         let (_, jacobian) = S::constraint_derivatives(&mechanics.constants, state.t, &state.q);
         // The momentum comes last, since it is known last.
         let mut kick = free.start_kick(mechanics, state.t, &state.q);
-        mechanics.subtract_constraint_force(jacobian.as_ref(), expected.as_ref(), kick.as_mut());
+        mechanics.subtract_constraint_force(&jacobian, expected, &mut kick);
         let momentum = round_off.momentum(&state.p).plus(&kick);
         let difference = drift_of(free, &momentum);
         let directions = mechanics.constraint_directions(&jacobian, free.drift());
@@ -105,7 +105,7 @@ impl<'a, S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'a, S, F
         let mut correction = residual.clone();
         let factor = matrix.solve_up_to_factor(&mut correction);
         let mut pull = S::PerCoordinate::<f64>::from_fn(|_| NOTHING);
-        self.mechanics.add_constraint_force(self.jacobian.as_ref(), correction.as_ref(), pull.as_mut());
+        self.mechanics.add_constraint_force(&self.jacobian, &correction, &mut pull);
         let moved = if F::Coupling::IS_DIAGONAL {
             self.free.drift().times(|i| pull[i])
         } else {
