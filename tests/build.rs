@@ -1,7 +1,8 @@
 //! Writes the systems that `kernels/` checks: one per operator of the grammar, 200 random ones, a large
-//! one.
+//! one; and those that `fuzz/` steps.
 //!
-//! Out: `kernel_scenes.rs` in `OUT_DIR`, with every struct and the function `scenes` that lists them.
+//! Out: `kernel_scenes.rs` in `OUT_DIR`, with every struct and the function `scenes` that lists them; `random_scenes.rs` with structs and the
+//! function `case` that steps one of them.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -11,6 +12,8 @@ mod random_expressions;
 
 /// Number of random systems; their seeds begin at 0.
 const N_RANDOM: u64 = 200;
+/// Number of random systems that are stepped: every one is compiled with every kind of scheme.
+const N_STEPPED: u64 = 8;
 /// Terms of the large system's Lagrangian: enough for several thousand statements.
 const N_LARGE_TERMS: usize = 150;
 
@@ -81,7 +84,41 @@ fn main() {
     write_systems(&mut text, "random", "dyn System", &random);
     write_systems(&mut text, "large", "dyn OverDoubles", &large);
     let directory = std::env::var("OUT_DIR").expect("cargo sets OUT_DIR");
-    std::fs::write(Path::new(&directory).join("kernel_scenes.rs"), text).expect("OUT_DIR can be written");
+    let write = |name: &str, text: String| {
+        std::fs::write(Path::new(&directory).join(name), text).expect("OUT_DIR can be written");
+    };
+    write("kernel_scenes.rs", text);
+    write("random_scenes.rs", stepped_systems());
+}
+
+/// The systems that are stepped, and a function that steps one of them from a random start.
+fn stepped_systems() -> String {
+    let mut text = String::new();
+    let mut arms = String::new();
+    for seed in 0..N_STEPPED {
+        let name = format!("Stepped{seed}");
+        let system = random_expressions::stepped_system(&name, seed);
+        writeln!(text, "/// Written by build.rs.\n{system}\n").expect("a string takes all text");
+        writeln!(
+            arms,
+            "        {seed} => {{
+            let start = (t, Array::from_fn(|_| number(choices)), Array::from_fn(|_| number(choices)));
+            steps_of(&{name} {{ a: parameter(choices), b: parameter(choices) }}, start, choices)
+        }}"
+        )
+        .expect("a string takes all text");
+    }
+    write!(
+        text,
+        "pub(super) fn case(choices: &mut Choices) -> Result<Outcome, String> {{
+    let t = if choices.once_in(8) {{ number(choices) }} else {{ 0.0 }};
+    match choices.below({N_STEPPED}) {{
+{arms}        other => unreachable!(\"{{other}}\"),
+    }}
+}}\n"
+    )
+    .expect("a string takes all text");
+    text
 }
 
 /// The structs, and a function that lists their scenes.

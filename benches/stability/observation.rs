@@ -1,7 +1,5 @@
 //! Runs under observation: every step is looked at and checked, within budgets.
 
-use std::time::{Duration, Instant};
-
 use evi_benches::external::Dop853Error;
 use evi_core::comparison::{Failure, Solver};
 use evi_core::integrator::StepError;
@@ -19,8 +17,8 @@ pub(crate) struct Course {
     pub(crate) steps_per_sample: u64,
     /// Period of the slowest oscillation.
     pub(crate) period: f64,
-    /// Longest time.
-    pub(crate) wall: Duration,
+    /// Steps after which a method that chooses its own is not followed further.
+    pub(crate) most_steps: u64,
 }
 
 /// What a state shows.
@@ -57,8 +55,8 @@ pub(crate) enum Ending {
     NotFinite {
         step: u64,
     },
-    /// The time was over before this step.
-    OutOfTime {
+    /// The budget of steps was spent before this one.
+    OutOfSteps {
         step: u64,
     },
 }
@@ -99,7 +97,6 @@ pub(crate) fn observe(specimen: &dyn Specimen, method: &str, course: Course) -> 
         }
     };
     let start = Snapshot::of(&*solver);
-    let clock = Instant::now();
     let mut step = 0;
     while step < course.steps {
         let last = (step + course.steps_per_sample).min(course.steps);
@@ -125,8 +122,8 @@ pub(crate) fn observe(specimen: &dyn Specimen, method: &str, course: Course) -> 
         if !is_near {
             break;
         }
-        if clock.elapsed() > course.wall {
-            seen.ending = Ending::OutOfTime { step };
+        if seen.taken > course.most_steps {
+            seen.ending = Ending::OutOfSteps { step };
             break;
         }
     }
@@ -147,7 +144,7 @@ fn ending(solver: &dyn Solver, failure: &Failure) -> Ending {
             Ending::Failed { step, residual: None, pivot: Some(matrix.pivot_ratio), reason }
         }
         _ if matches!(failure.downcast_ref(), Some(Dop853Error::TooManySteps { .. })) => {
-            Ending::OutOfTime { step }
+            Ending::OutOfSteps { step }
         }
         _ => Ending::Failed { step, residual: None, pivot: None, reason },
     }
@@ -169,9 +166,9 @@ impl Observation {
         }
     }
 
-    /// Whether the clock ended it.
-    pub(crate) const fn is_out_of_time(&self) -> bool {
-        matches!(self.ending, Ending::OutOfTime { .. })
+    /// Whether the budget ended it.
+    pub(crate) const fn is_out_of_steps(&self) -> bool {
+        matches!(self.ending, Ending::OutOfSteps { .. })
     }
 
     /// Largest value of a quantity.

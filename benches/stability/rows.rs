@@ -1,7 +1,6 @@
 //! Rows: what is planned, what is found, and what stands in tables and files.
 
 use std::sync::Arc;
-use std::time::Duration;
 
 use serde::Serialize;
 
@@ -24,14 +23,15 @@ impl Effort {
         if self.quick { values.iter().rev().step_by(3).rev().copied().collect() } else { values.to_vec() }
     }
 
-    /// Longest time of a row.
-    pub(crate) const fn wall(self) -> Duration {
-        Duration::from_secs(if self.quick { 2 } else { 60 })
+    /// Steps after which a method that chooses its own is not followed further: the same row on every machine. The longest of them, of a pendulum that spins at 1e6 rad/s,
+    /// takes 4e7.
+    pub(crate) const fn most_steps(self) -> u64 {
+        if self.quick { 1_000_000 } else { 100_000_000 }
     }
 
     /// A course of `steps` steps of which every one is looked at; the slowest oscillation has a period.
     pub(crate) const fn course(self, h: f64, steps: u64, period: f64) -> Course {
-        Course { h, steps, steps_per_sample: 1, period, wall: self.wall() }
+        Course { h, steps, steps_per_sample: 1, period, most_steps: self.most_steps() }
     }
 }
 
@@ -96,7 +96,7 @@ impl Finding {
         }
         faults.extend(figures.iter().filter(|figure| !figure.agrees()).map(Figure::text));
         let remark = match observation.ending {
-            Ending::OutOfTime { step } => Some(format!("out of time at step {step}")),
+            Ending::OutOfSteps { step } => Some(format!("out of steps at step {step}")),
             _ => None,
         };
         Self {

@@ -16,6 +16,10 @@ const LARGEST_KERNEL: usize = 50_000;
 pub(crate) const MOST_UNROLLED_COORDINATES: usize = 96;
 /// Equations of one index of a family that is written out: more than any solver here takes in one piece.
 pub(crate) const MOST_UNROLLED_EQUATIONS: i64 = 1_000;
+/// Numbers of a vector that is written out number by number: beyond, a kernel of its elements nears [`LARGEST_KERNEL`].
+pub(crate) const LONGEST_VECTOR: u64 = 10_000;
+/// Levels of vectors of vectors, and sizes of an array: twice as many as tensors of mechanics have. Everything that goes through them is recursive.
+pub(crate) const MOST_SIZES: usize = 8;
 /// Contributions that a message lists.
 const LISTED_CONTRIBUTIONS: usize = 5;
 

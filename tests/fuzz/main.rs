@@ -1,15 +1,18 @@
-//! Random parameters, states, step sizes and schemes, among them what is zero, huge, tiny or no number: a step is taken as its
+//! Random scenes, parameters, states, step sizes and schemes, among them what is zero, huge, tiny or no number: a step is taken as its
 //! equations say, or refused with an error that leaves the state as it was.
 //!
 //! Many cases: `EVI_FUZZ_CASES=100000 cargo test --release -p evi-tests --test fuzz -- --nocapture`, with `EVI_FUZZ_SEED=N` from case
 //! `N` on. A failure names its case, made as small as it goes.
 
+mod equations;
+mod expressions;
 mod numbers;
 #[path = "../random_choices/mod.rs"]
 mod random_choices;
 mod scenes;
 #[path = "../random_expressions/splitmix.rs"]
 mod splitmix;
+mod systems;
 
 use std::fmt::Debug;
 
@@ -33,6 +36,8 @@ struct Outcome {
     /// The largest residuals of accepted states, in units of the round-off of their terms.
     constraints: f64,
     hidden_constraints: f64,
+    /// Those of the equations of the action, in the same units, where they are looked at.
+    action: f64,
 }
 
 impl Outcome {
@@ -43,6 +48,7 @@ impl Outcome {
             refused: self.refused + other.refused,
             constraints: self.constraints.max(other.constraints),
             hidden_constraints: self.hidden_constraints.max(other.hidden_constraints),
+            action: self.action.max(other.action),
         }
     }
 }
@@ -218,17 +224,23 @@ fn constraint_error<S: MechanicalSystem>(mechanics: &Mechanics<S>, state: &State
 /// Runs the cases of a scene, and prints what became of them.
 fn steps_are_taken_as_their_equations_say_or_refused<S: Random>() {
     let outcomes = check(800, STACK, case::<S>);
+    summary(std::any::type_name::<S>(), &outcomes);
+}
+
+/// Prints what became of the cases, and whether that is enough of everything.
+#[track_caller]
+fn summary(kind: &str, outcomes: &[Outcome]) {
     let started = outcomes.iter().filter(|outcome| outcome.is_started).count();
     let all = outcomes.iter().copied().fold(Outcome::default(), Outcome::or);
     println!(
-        "{}: {} cases, {started} started, {} steps accepted, {} refused; residuals in round-offs: constraints {:.1}, \
-         hidden constraints {:.1}",
-        std::any::type_name::<S>(),
+        "{kind}: {} cases, {started} started, {} steps accepted, {} refused; residuals in round-offs: constraints {:.1}, \
+         hidden constraints {:.1}, action {:.1}",
         outcomes.len(),
         all.accepted,
         all.refused,
         all.constraints,
-        all.hidden_constraints
+        all.hidden_constraints,
+        all.action
     );
     assert!(all.accepted > outcomes.len() / 10, "too few steps are accepted");
     assert!(all.refused > 0 || started < outcomes.len(), "neither a start nor a step is refused");

@@ -9,7 +9,7 @@ use std::fmt::Display;
 use std::ops::Range;
 use std::panic::resume_unwind;
 use std::sync::mpsc::{RecvTimeoutError, channel};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use super::splitmix::SplitMix;
 
@@ -82,15 +82,21 @@ pub(super) fn check<T: Send + 'static, E: Display + Send + 'static>(
     property: fn(&mut Choices) -> Result<T, E>,
 ) -> Vec<T> {
     let run = |choices: Choices, seed: u64| on_a_thread(choices, seed, stack, property);
-    cases(n_cases)
-        .map(|seed| match run(Choices::random(seed), seed) {
-            (Ok(verdict), _) => verdict,
-            (Err(failure), tape) => {
+    let mut slowest = (Duration::ZERO, 0);
+    let verdicts = cases(n_cases)
+        .map(|seed| {
+            let start = Instant::now();
+            let (verdict, tape) = run(Choices::random(seed), seed);
+            slowest = slowest.max((start.elapsed(), seed));
+            verdict.unwrap_or_else(|failure| {
                 let (tape, failure) = shrunk(tape, failure, |tape| run(Choices::replayed(tape), seed));
                 panic!("case {seed}, of {} choices when shrunk: {failure}", tape.len());
-            }
+            })
         })
-        .collect()
+        .collect();
+    // Where cases take long, this one says why.
+    println!("the slowest case, {}, took {:.1?}", slowest.1, slowest.0);
+    verdicts
 }
 
 /// The seeds of the cases.

@@ -132,6 +132,54 @@ pub(crate) fn random_system(name: &str, seed: u64) -> String {
     )
 }
 
+/// A struct `name` whose structure depends on the seed: two or three coordinates, a mass that is constant, coupled or varies, fewer constraints than
+/// coordinates, time or none.
+#[allow(dead_code, reason = "the tests of the compiler take no steps")]
+pub(crate) fn stepped_system(name: &str, seed: u64) -> String {
+    let mut generator = Generator::new(seed);
+    let coordinates = ["x", "y", "z"];
+    let n = 2 + generator.below(2);
+    let with_time = |names: &[&'static str], has_time: bool| -> Vec<&'static str> {
+        names.iter().chain(if has_time { &["t"][..] } else { &[] }).copied().collect()
+    };
+    let positions = with_time(&coordinates[..n], seed % 3 == 2);
+    let masses = ["a", "b", "(a + b)"];
+    let mut kinetic: Vec<String> =
+        (0..n).map(|i| format!("0.5 * {} * der({}).powi(2)", masses[i], coordinates[i])).collect();
+    match seed % 4 {
+        1 => kinetic.push("0.3 * a * der(x) * der(y)".to_owned()),
+        // At least half of the mass is left.
+        2 => kinetic
+            .push(format!("0.2 * a * ({}).sin() * der(x).powi(2)", generator.expression(&positions, 1))),
+        3 => kinetic
+            .push(format!("0.2 * b * ({}).cos() * der(x) * der(y)", generator.expression(&positions, 1))),
+        _ => {}
+    }
+    let potential = generator.expression(&positions, 3);
+    let constraints: String = (0..(seed as usize / 2) % n)
+        .map(|c| {
+            let side = generator.expression(&positions, 1);
+            format!(
+                "constraint(c{c}: {0} + 0.3 * {0}.powi(2) + 0.2 * ({side}).sin() == 0.1 * {1}),",
+                coordinates[c],
+                coordinates[n - 1]
+            )
+        })
+        .collect();
+    format!(
+        "#[derive(MechanicalSystem, Clone, Debug)]
+        #[evi(
+            coordinates({names}),
+            kinetic = {kinetic},
+            potential = {potential},
+            {constraints}
+        )]
+        pub struct {name} {{ pub a: f64, pub b: f64 }}",
+        names = coordinates[..n].join(", "),
+        kinetic = kinetic.join(" + "),
+    )
+}
+
 /// A struct `name` in six coordinates whose kernels have thousands of statements: a Lagrangian of `n_terms`
 /// products of sines and cosines, each with a factor of its own that depends on parameters, and a constraint
 /// of as many.

@@ -7,7 +7,7 @@ use evi_examples::HarmonicOscillator;
 
 use crate::action::{MIDPOINT, SIMPSON, TRAPEZOID};
 use crate::methods::on_curves;
-use crate::observation::{Course, Observation};
+use crate::observation::Observation;
 use crate::rows::{Effort, Planned, Trial};
 use crate::scenes::FreeParticle;
 use crate::specimen::Experiment;
@@ -125,7 +125,7 @@ fn hyperbolic(effort: Effort, u: f64) -> Vec<Planned> {
         .about([0.0])
         .with_frequency(Frequency::Hyperbolic(rate))
         .reaching(f64::INFINITY);
-    let course = Course { wall: effort.wall(), ..effort.course(H, 1, f64::INFINITY) };
+    let course = effort.course(H, 1, f64::INFINITY);
     Trial::new(CASE, format!("hyperbolic, u = {u}"), experiment, course)
         .saying(move |method| {
             /// Momenta are off by a factor that grows with u, and with it the energy.

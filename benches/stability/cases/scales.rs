@@ -112,8 +112,8 @@ fn in_units(effort: Effort, Units { name, length, mass, time }: Units) -> Vec<Pl
         .saying(|_| Some(Theory::new("units do not matter", &[Kind::Stable, Kind::Drifting])))
         .measuring(move |method, seen| {
             let other = observe(&*same, method, course);
-            // On a busy machine the two may end at different times.
-            if seen.is_out_of_time() || other.is_out_of_time() {
+            // Those that the budget ends need not end at the same time.
+            if seen.is_out_of_steps() || other.is_out_of_steps() {
                 return Vec::new();
             }
             let difference = difference(seen, &other, length);

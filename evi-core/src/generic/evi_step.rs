@@ -75,7 +75,7 @@ impl EviStages {
             next.v[i] = self.difference[i] / h;
         }
         self.end_momentum(work, state, &mut next.p);
-        work.project_momentum(next).map_err(|cause| StepError::Projection { t: next.t, cause })?;
+        work.project_end(&state.q, next, h)?;
         if next.is_finite() { Ok(()) } else { Err(StepError::NotFinite { t: next.t }) }
     }
 

@@ -108,7 +108,7 @@ impl GalerkinPoints {
         for node in 0..=intervals {
             self.node.add_momentum_gain(node, &self.curves, &self.points, work, state, &mut next.p);
         }
-        work.project_momentum(next).map_err(|cause| StepError::Projection { t: next.t, cause })?;
+        work.project_end(&state.q, next, self.curves.h)?;
         if !next.is_finite() {
             return Err(StepError::NotFinite { t: next.t });
         }

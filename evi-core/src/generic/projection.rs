@@ -7,8 +7,16 @@ use super::GenericSystem;
 use super::derivatives::Point;
 use super::state::GenericState;
 use super::workspace::Workspace;
+use crate::integrator::StepError;
+use crate::linear::largest_magnitude;
 use crate::mechanics::{ProjectionError, relative};
 use crate::newton;
+
+/// Velocities are on the hidden constraints to round-off. What is farther beside them than this share of their terms is round-off of an impulse that
+/// exceeds the momentum by all of its digits.
+const BESIDE: f64 = 1e-3;
+/// Of the configuration, a length far above round-off and far below a step: velocities of less than that per step are at rest.
+const SLIGHT: f64 = 1e-10;
 
 impl<S: GenericSystem> Workspace<S> {
     /// Removes from the momentum of `state` the impulse that makes the motion leave the constraints, and overwrites its
@@ -60,6 +68,38 @@ impl<S: GenericSystem> Workspace<S> {
         })?;
         for i in 0..n {
             p[i] -= impulse.iter().enumerate().map(|(c, impulse)| jacobian[(c, i)] * impulse).sum::<f64>();
+        }
+        Ok(())
+    }
+
+    /// Projects the momentum at the end of a step of size `h` that began at the configuration `start`.
+    ///
+    /// # Errors
+    /// [`StepError::Projection`] where that is not done, or its velocity is beside the hidden constraints.
+    pub(super) fn project_end(
+        &mut self,
+        start: &[f64],
+        end: &mut GenericState,
+        h: f64,
+    ) -> Result<(), StepError> {
+        let t = end.t;
+        self.project_momentum(end).map_err(|cause| StepError::Projection { t, cause })?;
+        let slight = SLIGHT * largest_magnitude(end.q.iter().copied());
+        for (c, &rate) in self.time_rates.iter().enumerate() {
+            let (mut along, mut terms) = (rate, rate.abs());
+            for i in 0..start.len() {
+                let slope = end.jacobian[(c, i)];
+                along += slope * end.v[i];
+                let moved = (end.q[i] - start[i]).abs() + slight;
+                terms += slope.abs() * (end.v[i].abs() + moved / h.abs());
+            }
+            let beside = relative(along.abs(), terms);
+            // Written so that a NaN is refused.
+            let is_on_constraint = beside <= BESIDE;
+            if !is_on_constraint {
+                let cause = ProjectionError::NotConverged { corrections: 1, last_correction: beside };
+                return Err(StepError::Projection { t, cause });
+            }
         }
         Ok(())
     }

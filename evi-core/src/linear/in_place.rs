@@ -2,6 +2,7 @@
 //!
 //! In: the entries of a square matrix by columns, in storage of the caller's. Out: its factors in the same place.
 
+use super::pivoted::exchange;
 use super::{SingularMatrix, checked_pivot_ratio};
 
 /// Number of rows from which on it pays to look for a band.
@@ -11,28 +12,41 @@ const SMALLEST_BAND: usize = 24;
 /// entries.
 ///
 /// Beyond the last nonzero of a row or a column nothing is computed: the cost of a band is proportional to its length (ibid., sec. 4.3).
+///
+/// Every index is in range by construction. Where the optimiser does not find that out, an access that would fail ends the elimination, so that steps
+/// have no path to a panic.
 pub(crate) struct InPlaceLu {
-    /// Row that was swapped with row `k` before column `k` was eliminated.
-    swaps: Vec<usize>,
-    /// `1/Uₖₖ`: one division per column.
-    inverse_pivots: Vec<f64>,
-    /// Behind the last nonzero of every column of `L`; behind its last row where no band is looked for.
-    column_ends: Vec<usize>,
+    columns: Vec<Column>,
     /// Behind the last nonzero of every row that is left.
     row_ends: Vec<usize>,
     pivot_ratio: f64,
+}
+
+/// What belongs to a column of the factors.
+#[derive(Clone, Copy)]
+struct Column {
+    /// Row that was swapped with row `k` before column `k` was eliminated.
+    swap: usize,
+    /// Behind the last nonzero of the column of `L`; behind its last row where no band is looked for.
+    end: usize,
+    /// `1/Uₖₖ`: one division per column.
+    inverse_pivot: f64,
 }
 
 impl InPlaceLu {
     /// For matrices of `dimension` rows.
     pub(crate) fn new(dimension: usize) -> Self {
         Self {
-            swaps: vec![0; dimension],
-            inverse_pivots: vec![1.0; dimension],
-            column_ends: vec![dimension; dimension],
+            columns: vec![Column { swap: 0, end: dimension, inverse_pivot: 1.0 }; dimension],
             row_ends: vec![0; dimension],
             pivot_ratio: 1.0,
         }
+    }
+
+    /// Number of rows; one where there is none, since nothing is cut into columns of no rows.
+    #[inline]
+    fn dimension(&self) -> usize {
+        self.columns.len().max(1)
     }
 
     /// Overwrites the matrix with its factors.
@@ -40,72 +54,54 @@ impl InPlaceLu {
     /// # Errors
     /// [`SingularMatrix`] when the smallest pivot is lost in the round-off of the largest.
     pub(crate) fn factor(&mut self, entries: &mut [f64]) -> Result<(), SingularMatrix> {
-        let dimension = self.swaps.len();
+        let dimension = self.columns.len();
         if dimension < SMALLEST_BAND {
             self.eliminate(entries);
         } else {
             self.find_row_ends(entries)?;
             self.eliminate_within_band(entries);
         }
-        self.pivot_ratio = checked_pivot_ratio(dimension, |i| entries[i * dimension + i])?;
+        let pivot = |i: usize| entries.get(i * (dimension + 1)).copied().unwrap_or(f64::NAN);
+        self.pivot_ratio = checked_pivot_ratio(dimension, pivot)?;
         Ok(())
     }
 
     /// Eliminates every column.
     fn eliminate(&mut self, entries: &mut [f64]) {
-        let dimension = self.swaps.len();
-        for k in 0..dimension {
-            let (pivot_row, pivot) = largest_entry(&entries[k * dimension..(k + 1) * dimension], k);
-            self.swaps[k] = pivot_row;
+        let dimension = self.dimension();
+        let mut rest = entries;
+        for (k, column) in self.columns.iter_mut().enumerate() {
+            let Some((factors, behind)) = rest.split_at_mut_checked(dimension) else { return };
+            let (pivot_row, pivot) = largest_entry(factors, k);
+            column.swap = pivot_row;
             // Exact zero: nothing is left to eliminate in this column; the check of the pivots reports it.
             if pivot != 0.0 {
-                self.inverse_pivots[k] = 1.0 / pivot;
-                self.eliminate_column(entries, k, dimension, dimension);
+                column.inverse_pivot = 1.0 / pivot;
+                column.eliminate(k, factors, behind, dimension);
             }
+            rest = behind;
         }
     }
 
     /// Eliminates every column as far as it and the rows in it reach.
     fn eliminate_within_band(&mut self, entries: &mut [f64]) {
-        let dimension = self.swaps.len();
-        for k in 0..dimension {
-            let column = &entries[k * dimension..(k + 1) * dimension];
-            let end =
-                column.iter().rposition(|&entry| entry != 0.0).map_or(k + 1, |row| (row + 1).max(k + 1));
-            let (pivot_row, pivot) = largest_entry(&column[..end], k);
-            self.swaps[k] = pivot_row;
-            self.column_ends[k] = end;
+        let dimension = self.dimension();
+        let mut rest = entries;
+        for (k, column) in self.columns.iter_mut().enumerate() {
+            let Some((factors, behind)) = rest.split_at_mut_checked(dimension) else { return };
+            let last = factors.iter().rposition(|&entry| entry != 0.0);
+            let end = last.map_or(k + 1, |row| (row + 1).max(k + 1));
+            let (pivot_row, pivot) = largest_entry(factors.get(..end).unwrap_or_default(), k);
+            (column.swap, column.end) = (pivot_row, end);
             // As above.
             if pivot != 0.0 {
-                self.inverse_pivots[k] = 1.0 / pivot;
-                let row_end = self.row_ends[k..end].iter().fold(k + 1, |end, &other| end.max(other));
-                self.row_ends[k..end].fill(row_end);
-                self.eliminate_column(entries, k, end, row_end);
+                column.inverse_pivot = 1.0 / pivot;
+                let row_ends = self.row_ends.get_mut(k..end).unwrap_or_default();
+                let row_end = row_ends.iter().fold(k + 1, |end, &other| end.max(other));
+                row_ends.fill(row_end);
+                column.eliminate(k, factors, behind, row_end);
             }
-        }
-    }
-
-    /// Brings the pivot of column `k` up and eliminates what is below it, up to row `end`, from the columns up to `row_end`.
-    fn eliminate_column(&self, entries: &mut [f64], k: usize, end: usize, row_end: usize) {
-        let (dimension, pivot_row, inverse_pivot) = (self.swaps.len(), self.swaps[k], self.inverse_pivots[k]);
-        let (head, tail) = entries.split_at_mut((k + 1) * dimension);
-        let pivots = &mut head[k * dimension..][..end];
-        pivots.swap(k, pivot_row);
-        let multipliers = &mut pivots[k + 1..];
-        for multiplier in multipliers.iter_mut() {
-            *multiplier *= inverse_pivot;
-        }
-        for column in tail.chunks_exact_mut(dimension).take(row_end - (k + 1)) {
-            let column = &mut column[..end];
-            column.swap(k, pivot_row);
-            let top = column[k];
-            // Where the matrix has blocks of zeros, half of the columns.
-            if top == 0.0 {
-                continue;
-            }
-            for (entry, multiplier) in column[k + 1..].iter_mut().zip(multipliers.iter()) {
-                *entry -= multiplier * top;
-            }
+            rest = behind;
         }
     }
 
@@ -114,7 +110,7 @@ impl InPlaceLu {
         if !entries.iter().all(|entry| entry.is_finite()) {
             return Err(SingularMatrix { pivot_ratio: f64::NAN });
         }
-        for (col, column) in entries.chunks_exact(self.swaps.len()).enumerate() {
+        for (col, column) in entries.chunks_exact(self.dimension()).enumerate() {
             for (end, &entry) in self.row_ends.iter_mut().zip(column) {
                 if entry != 0.0 {
                     *end = col + 1;
@@ -126,38 +122,37 @@ impl InPlaceLu {
 
     /// Overwrites the right-hand side with the solution; `entries` are the factors.
     pub(crate) fn solve(&self, entries: &[f64], rhs: &mut [f64]) {
-        let dimension = self.swaps.len();
+        let columns = || self.columns.iter().zip(entries.chunks_exact(self.dimension())).enumerate();
         // The multipliers of a column stand in the rows of its own time: a swap comes right before their substitution.
-        for (k, &pivot_row) in self.swaps.iter().enumerate() {
-            rhs.swap(k, pivot_row);
-            let value = rhs[k];
-            let multipliers = &entries[k * dimension + k + 1..k * dimension + self.column_ends[k]];
-            for (entry, multiplier) in rhs[k + 1..].iter_mut().zip(multipliers) {
-                *entry -= multiplier * value;
+        for (k, (column, factors)) in columns() {
+            exchange(rhs, k, column.swap);
+            let Some([value, below @ ..]) = rhs.get_mut(k..) else { return };
+            for (entry, multiplier) in below.iter_mut().zip(column.multipliers(k, factors)) {
+                *entry -= multiplier * *value;
             }
         }
-        for k in (0..dimension).rev() {
-            let value = rhs[k] * self.inverse_pivots[k];
-            rhs[k] = value;
-            for (entry, factor) in rhs[..k].iter_mut().zip(&entries[k * dimension..]) {
-                *entry -= factor * value;
+        for (k, (column, factors)) in columns().rev() {
+            let Some([above @ .., value]) = rhs.get_mut(..=k) else { return };
+            *value *= column.inverse_pivot;
+            for (entry, factor) in above.iter_mut().zip(factors) {
+                *entry -= factor * *value;
             }
         }
     }
 
     /// Overwrites the right-hand side with the solution for the transposed matrix; `entries` are the factors.
     pub(crate) fn solve_transposed(&self, entries: &[f64], rhs: &mut [f64]) {
-        let dimension = self.swaps.len();
-        for k in 0..dimension {
-            let above = entries[k * dimension..].iter().zip(&rhs[..k]);
-            let sum: f64 = above.map(|(factor, value)| factor * value).sum();
-            rhs[k] = (rhs[k] - sum) * self.inverse_pivots[k];
+        let columns = || self.columns.iter().zip(entries.chunks_exact(self.dimension())).enumerate();
+        for (k, (column, factors)) in columns() {
+            let Some([above @ .., value]) = rhs.get_mut(..=k) else { return };
+            let sum: f64 = factors.iter().zip(above).map(|(factor, value)| factor * *value).sum();
+            *value = (*value - sum) * column.inverse_pivot;
         }
-        for k in (0..dimension).rev() {
-            let multipliers = &entries[k * dimension + k + 1..k * dimension + self.column_ends[k]];
-            let sum: f64 = multipliers.iter().zip(&rhs[k + 1..]).map(|(factor, value)| factor * value).sum();
-            rhs[k] -= sum;
-            rhs.swap(k, self.swaps[k]);
+        for (k, (column, factors)) in columns().rev() {
+            let Some([value, below @ ..]) = rhs.get_mut(k..) else { return };
+            let multipliers = column.multipliers(k, factors);
+            *value -= multipliers.iter().zip(below).map(|(factor, value)| factor * *value).sum::<f64>();
+            exchange(rhs, k, column.swap);
         }
     }
 
@@ -167,15 +162,44 @@ impl InPlaceLu {
     }
 }
 
+impl Column {
+    /// Brings the pivot of this column, the `k`-th, up and eliminates what is below it from the columns `behind` up to `row_end`.
+    fn eliminate(&self, k: usize, factors: &mut [f64], behind: &mut [f64], row_end: usize) {
+        let dimension = factors.len().max(1);
+        exchange(factors, k, self.swap);
+        let Some([_, multipliers @ ..]) = factors.get_mut(k..self.end) else { return };
+        for multiplier in multipliers.iter_mut() {
+            *multiplier *= self.inverse_pivot;
+        }
+        for column in behind.chunks_exact_mut(dimension).take(row_end - (k + 1)) {
+            exchange(column, k, self.swap);
+            let Some([top, below @ ..]) = column.get_mut(k..self.end) else { return };
+            // Where the matrix has blocks of zeros, half of the columns.
+            if *top == 0.0 {
+                continue;
+            }
+            for (entry, multiplier) in below.iter_mut().zip(multipliers.iter()) {
+                *entry -= multiplier * *top;
+            }
+        }
+    }
+
+    /// The multipliers of this column, the `k`-th.
+    #[inline]
+    fn multipliers<'a>(&self, k: usize, factors: &'a [f64]) -> &'a [f64] {
+        factors.get(k + 1..self.end).unwrap_or_default()
+    }
+}
+
 /// Row and value of the largest entry of a column from row `first` on; a NaN counts as the largest, so that it reaches
 /// the pivots.
 fn largest_entry(column: &[f64], first: usize) -> (usize, f64) {
-    let (mut largest, mut magnitude) = (first, column[first].abs());
-    for (row, entry) in column.iter().enumerate().skip(first + 1) {
-        let is_smaller = entry.abs() <= magnitude;
-        if !is_smaller && !magnitude.is_nan() {
-            (largest, magnitude) = (row, entry.abs());
+    let mut largest = (first, 0.0_f64);
+    for (row, &entry) in column.iter().enumerate().skip(first) {
+        let is_smaller = entry.abs() <= largest.1.abs();
+        if !is_smaller && !largest.1.is_nan() {
+            largest = (row, entry);
         }
     }
-    (largest, column[largest])
+    largest
 }

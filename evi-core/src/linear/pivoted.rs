@@ -66,7 +66,7 @@ where
                 }
             }
             exchanges[k] = pivot;
-            swap(rows.as_mut(), k, pivot);
+            exchange(rows.as_mut(), k, pivot);
             let (above, below) = rows.as_mut().split_at_mut(k + 1);
             let Some([pivot, right @ ..]) = above.last().and_then(|row| row.as_ref().get(k..)) else {
                 continue;
@@ -93,7 +93,7 @@ where
         let n = M::LEN;
         // The multipliers of a column were exchanged with the rows below it: all exchanges come before the substitution.
         for k in 0..n {
-            swap(rhs.as_mut(), k, self.exchanges[k]);
+            exchange(rhs.as_mut(), k, self.exchanges[k]);
         }
         for row in 0..n {
             for col in 0..row {
@@ -116,7 +116,7 @@ where
 
 /// Exchanges two elements; both are there, which the optimiser need not find out.
 #[inline(always)]
-fn swap<X>(elements: &mut [X], i: usize, j: usize) {
+pub(super) fn exchange<X>(elements: &mut [X], i: usize, j: usize) {
     if i != j && i < elements.len() && j < elements.len() {
         elements.swap(i, j);
     }

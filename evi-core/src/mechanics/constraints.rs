@@ -229,7 +229,8 @@ pub(crate) fn for_each_constraint_curvature<S: MechanicalSystem>(
     };
     for row in 0..S::N_COORDINATES {
         let curves = curved_with::<S>(row);
-        for col in (0..=row).filter(|&col| curves[col]) {
+        // Not up to `row` alone, which hides from the optimiser that all of them are in range.
+        for col in (0..S::N_COORDINATES).filter(|&col| col <= row && curves[col]) {
             // γ is a quadratic polynomial of the velocity: γ(a + b) − γ(a) − γ(b) + γ(0) leaves twice its
             // bilinear form, without the terms of time. Constraint by constraint, so that small whole numbers
             // cancel exactly.

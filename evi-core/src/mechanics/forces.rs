@@ -62,7 +62,7 @@ impl<S: MechanicalSystem> ForceDerivatives<'_, S> {
     #[inline]
     pub(crate) fn for_each_by_q(&self, mut visit: impl FnMut(usize, usize, f64)) {
         for entry in S::STRUCTURE.forces.q {
-            visit(entry.row, entry.col, entry.value(self.constants.as_ref(), self.entries.as_ref()));
+            visit(entry.row, entry.col, entry.number(self.constants.as_ref(), self.entries.as_ref()));
         }
     }
 
@@ -70,7 +70,7 @@ impl<S: MechanicalSystem> ForceDerivatives<'_, S> {
     #[inline]
     pub(crate) fn for_each_by_v(&self, mut visit: impl FnMut(usize, usize, f64)) {
         for entry in S::STRUCTURE.forces.v {
-            visit(entry.row, entry.col, entry.value(self.constants.as_ref(), self.entries.as_ref()));
+            visit(entry.row, entry.col, entry.number(self.constants.as_ref(), self.entries.as_ref()));
         }
     }
 }

@@ -34,7 +34,7 @@ pub(crate) struct GalerkinAction<S: MechanicalSystem, T, const K: usize> {
     h: f64,
     /// Where every row of a block stands: all nodes of a coordinate or a constraint together, coordinates and constraints that share an equation
     /// near each other.
-    places: Vec<usize>,
+    places: S::PerUnknown<usize>,
 }
 
 /// The unknowns of a step.
@@ -79,18 +79,23 @@ impl Blocks<'_> {
     #[inline]
     fn add(&mut self, (a, row): (usize, usize), (b, col): (usize, usize), value: f64) {
         let dimension = self.places.len() * self.intervals;
-        let (row, col) = (self.places[row] * self.intervals + a, self.places[col] * self.intervals + b);
-        self.entries[col * dimension + row] += value;
+        let place = |node: usize, index: usize| Some(self.places.get(index)? * self.intervals + node);
+        let place = place(b, col).zip(place(a, row)).map(|(col, row)| col * dimension + row);
+        // There is one for every equation and every unknown, which the optimiser need not find out.
+        if let Some(entry) = place.and_then(|place| self.entries.get_mut(place)) {
+            *entry += value;
+        }
     }
 }
 
 /// The place of every coordinate and constraint in the matrix.
-fn places<S: MechanicalSystem>() -> Vec<usize> {
+fn places<S: MechanicalSystem>() -> S::PerUnknown<usize> {
     let (hessian, jacobian, forces) = (S::STRUCTURE.hessian, S::STRUCTURE.jacobian.q, S::STRUCTURE.forces);
     let of_coordinates = [hessian.qq, hessian.vq, hessian.vv, forces.q, forces.v].into_iter().flatten();
     let of_coordinates = of_coordinates.map(|entry| (entry.row, entry.col));
     let of_constraints = jacobian.iter().map(|entry| (constraint_index::<S>(entry.row), entry.col));
-    band_places(S::N_COORDINATES + S::N_CONSTRAINTS, of_coordinates.chain(of_constraints))
+    let places = band_places(S::N_COORDINATES + S::N_CONSTRAINTS, of_coordinates.chain(of_constraints));
+    Array::from_fn(|row| places[row])
 }
 
 impl<S: MechanicalSystem, T: NodalTables<K>, const K: usize> GalerkinAction<S, T, K> {
@@ -179,7 +184,7 @@ impl<S: MechanicalSystem, T: NodalTables<K>, const K: usize> GalerkinAction<S, T
     /// `h v_j` of coordinate `i` per point `a`, times the weight of the node.
     #[inline]
     fn weighted_rate(&self, node: usize, a: usize, i: usize) -> f64 {
-        self.nodes.weights[node] * self.rate(node, a, i)
+        self.nodes.weight(node) * self.rate(node, a, i)
     }
 
     /// Overwrites `residual` with the left sides of the equations, node by node, and `entries` (by columns, in the order of
@@ -188,23 +193,22 @@ impl<S: MechanicalSystem, T: NodalTables<K>, const K: usize> GalerkinAction<S, T
         &self,
         start: &State<S>,
         points: &Points<S, K>,
-        residual: &mut [f64],
+        residual: &mut [S::PerUnknown<f64>; K],
         entries: &mut [f64],
     ) -> f64 {
         let (n, h) = (S::N_COORDINATES, self.h);
-        let block = n + S::N_CONSTRAINTS;
         let constants = &self.mechanics.constants;
-        residual.fill(0.0);
+        *residual = core::array::from_fn(|_| Array::filled(0.0));
         entries.fill(0.0);
-        let mut matrix = Blocks { entries, places: &self.places, intervals: K };
+        let mut matrix = Blocks { entries, places: self.places.as_ref(), intervals: K };
         for i in 0..n {
-            residual[i] -= h * start.p[i];
+            residual[0][i] -= h * start.p[i];
         }
         for node in 0..=K {
             let (t, q) = (self.time(start.t, node), self.position(&start.q, points, node));
             let v = self.velocity(&start.q, points, node);
             let (mut gradient, hessian) = S::lagrangian_derivatives(constants, t, &q, &v);
-            let weight = self.nodes.weights[node];
+            let weight = self.nodes.weight(node);
             if S::STRUCTURE.forces.exist() {
                 let at = ForcePoint { t, q: &q, v: &v, inputs: &start.inputs };
                 let derivatives = self.mechanics.add_force_with_derivatives(at, &mut gradient.force);
@@ -212,10 +216,10 @@ impl<S: MechanicalSystem, T: NodalTables<K>, const K: usize> GalerkinAction<S, T
             }
             for i in 0..n {
                 for a in 0..K {
-                    residual[a * block + i] -= h * self.weighted_rate(node, a, i) * gradient.momentum[i];
+                    residual[a][i] -= h * self.weighted_rate(node, a, i) * gradient.momentum[i];
                 }
                 if node < K {
-                    residual[node * block + i] -= h * h * weight * gradient.force[i];
+                    residual[node][i] -= h * h * weight * gradient.force[i];
                 }
             }
             self.subtract_second_derivatives(node, hessian.as_ref(), &mut matrix);
@@ -223,11 +227,11 @@ impl<S: MechanicalSystem, T: NodalTables<K>, const K: usize> GalerkinAction<S, T
             if node < K {
                 let impulse = &points.impulses[node];
                 S::for_each_slope(constants, &jacobian, |row, col, slope| {
-                    residual[node * block + col] += slope * impulse[row];
+                    residual[node][col] += slope * impulse[row];
                 });
             }
             for entry in S::STRUCTURE.jacobian.q {
-                let slope = entry.value(constants.as_ref(), jacobian.as_ref());
+                let slope = entry.number(constants.as_ref(), jacobian.as_ref());
                 let constraint = constraint_index::<S>(entry.row);
                 if node < K {
                     matrix.add((node, entry.col), (node, constraint), slope);
@@ -238,7 +242,7 @@ impl<S: MechanicalSystem, T: NodalTables<K>, const K: usize> GalerkinAction<S, T
             }
             if node > 0 {
                 for c in 0..S::N_CONSTRAINTS {
-                    residual[(node - 1) * block + constraint_index::<S>(c)] = constraint[c];
+                    residual[node - 1][constraint_index::<S>(c)] = constraint[c];
                 }
                 if Self::CONSTRAINTS_CURVE && node < K {
                     let impulse = &points.impulses[node];
@@ -248,8 +252,7 @@ impl<S: MechanicalSystem, T: NodalTables<K>, const K: usize> GalerkinAction<S, T
                 }
             }
         }
-        let constraints = residual.chunks_exact(block).flat_map(|rows| rows[n..].iter().copied());
-        largest_magnitude(constraints)
+        largest_magnitude(residual.iter().flat_map(|rows| rows.as_ref().iter().skip(n).copied()))
     }
 
     /// Subtracts this node's part of the derivative of `h ∂L_d/∂q_a` by `q_b`, `a < K`, `b ≥ 1`:
@@ -257,17 +260,17 @@ impl<S: MechanicalSystem, T: NodalTables<K>, const K: usize> GalerkinAction<S, T
     fn subtract_second_derivatives(&self, node: usize, hessian: &[f64], matrix: &mut Blocks<'_>) {
         let constants = self.mechanics.constants.as_ref();
         let pattern = S::STRUCTURE.hessian;
-        let (h, weight) = (self.h, self.nodes.weights[node]);
+        let (h, weight) = (self.h, self.nodes.weight(node));
         let is_inner = 0 < node && node < K;
         for entry in pattern.qq.iter().filter(|_| is_inner) {
-            let value = weight * h * h * entry.value(constants, hessian);
+            let value = weight * h * h * entry.number(constants, hessian);
             matrix.add((node, entry.row), (node - 1, entry.col), -value);
             if entry.row != entry.col {
                 matrix.add((node, entry.col), (node - 1, entry.row), -value);
             }
         }
         for entry in pattern.vq {
-            let value = h * entry.value(constants, hessian);
+            let value = h * entry.number(constants, hessian);
             // Row of the velocity, column of the coordinate.
             for a in (0..K).filter(|_| node > 0) {
                 let rate = self.weighted_rate(node, a, entry.row);
@@ -280,7 +283,7 @@ impl<S: MechanicalSystem, T: NodalTables<K>, const K: usize> GalerkinAction<S, T
             }
         }
         for entry in pattern.vv {
-            let value = entry.value(constants, hessian);
+            let value = entry.number(constants, hessian);
             let mut add = |row: usize, col: usize| {
                 for b in 0..K {
                     let end = self.tables.table(col).rates(node).differences[b] * value;
@@ -303,7 +306,7 @@ impl<S: MechanicalSystem, T: NodalTables<K>, const K: usize> GalerkinAction<S, T
         derivatives: &ForceDerivatives<'_, S>,
         matrix: &mut Blocks<'_>,
     ) {
-        let (h, weight) = (self.h, self.nodes.weights[node]);
+        let (h, weight) = (self.h, self.nodes.weight(node));
         if node == K {
             return;
         }
@@ -331,7 +334,7 @@ impl<S: MechanicalSystem, T: NodalTables<K>, const K: usize> GalerkinAction<S, T
             let mut gradient = S::lagrangian_gradient(constants, t, &q, &v);
             self.mechanics
                 .add_force(ForcePoint { t, q: &q, v: &v, inputs: &start.inputs }, &mut gradient.force);
-            let weight = self.nodes.weights[node];
+            let weight = self.nodes.weight(node);
             let mut pull = S::PerCoordinate::<f64>::from_fn(|_| 0.0);
             if node < K {
                 let (_, jacobian) = S::constraint_derivatives(constants, t, &q);

@@ -41,7 +41,8 @@ impl<const S: usize> Rates<S> {
     /// `h ẋ` per point `a` at fixed other points.
     #[inline]
     pub(crate) fn per_point(&self, a: usize) -> f64 {
-        if a == 0 { self.start - self.differences.iter().sum::<f64>() } else { self.differences[a - 1] }
+        let of_difference = self.differences.get(a.wrapping_sub(1)).copied();
+        of_difference.unwrap_or_else(|| self.start - self.differences.iter().sum::<f64>())
     }
 }
 
@@ -56,7 +57,7 @@ impl<const S: usize> NodalTable<S> {
     /// The rates at a node, counted from 0 to `S`.
     #[inline]
     pub(crate) fn rates(&self, node: usize) -> &Rates<S> {
-        if node == 0 { &self.first } else { &self.others[node - 1] }
+        self.others.get(node.wrapping_sub(1)).unwrap_or(&self.first)
     }
 
     /// The table of `frequency` for steps of size `h`; without a frequency that of polynomials.
@@ -199,10 +200,16 @@ impl<const S: usize> LobattoNodes<S> {
         Self { offsets, weights, inverse_products }
     }
 
-    /// Nodes on `[0, 1]`.
+    /// Nodes on `[0, 1]`; what is none has no place.
     #[inline]
     pub(crate) fn node(&self, j: usize) -> f64 {
-        0.5 + self.offsets[j]
+        self.offsets.get(j).map_or(f64::NAN, |offset| 0.5 + offset)
+    }
+
+    /// The weight of a node; what is none has no weight.
+    #[inline]
+    pub(crate) fn weight(&self, j: usize) -> f64 {
+        self.weights.get(j).copied().unwrap_or(f64::NAN)
     }
 
     fn map(&self, function: impl Fn(f64) -> f64) -> Nodes {

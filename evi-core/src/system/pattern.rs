@@ -115,6 +115,17 @@ impl Entry {
             EntryValue::Varying(index) => varying[index],
         }
     }
+
+    /// The same of numbers, and none where there is no value: for loops over entries that are not unrolled, where the optimiser does not find out that
+    /// there is one.
+    #[inline]
+    pub(crate) fn number(&self, constants: &[f64], varying: &[f64]) -> f64 {
+        let value = match self.value {
+            EntryValue::Constant(slot) => constants.get(slot),
+            EntryValue::Varying(index) => varying.get(index),
+        };
+        value.copied().unwrap_or(f64::NAN)
+    }
 }
 
 /// Where the value of a matrix entry comes from.

@@ -34,7 +34,33 @@ pub(crate) enum ArrayKind {
     Parameter,
 }
 
+impl Value {
+    /// How many numbers it consists of; none where a size is not known.
+    pub(crate) fn n_numbers(&self) -> u64 {
+        match self {
+            Self::Scalar(_) | Self::Index(_) => 1,
+            Self::Vector(parts) => parts.iter().map(Self::n_numbers).fold(0, u64::saturating_add),
+            Self::Array(view) => view.n_numbers(),
+        }
+    }
+
+    /// How many levels of vectors it has; a number has none.
+    pub(crate) fn n_levels(&self) -> usize {
+        match self {
+            Self::Scalar(_) | Self::Index(_) => 0,
+            Self::Vector(parts) => 1 + parts.iter().map(Self::n_levels).max().unwrap_or(0),
+            Self::Array(view) => view.shape.len(),
+        }
+    }
+}
+
 impl View {
+    /// The same of the part.
+    pub(crate) fn n_numbers(&self) -> u64 {
+        let sizes = self.shape.iter().map(|size| u64::try_from(size.as_number().unwrap_or(0)).unwrap_or(0));
+        sizes.fold(1, u64::saturating_mul)
+    }
+
     /// The part at `index`, which has a size.
     pub(crate) fn at(mut self, index: Affine) -> Self {
         self.shape.remove(0);

@@ -39,7 +39,7 @@ impl<R: Resolver> Lowering<'_, R> {
             syn::Expr::Array(array) => {
                 // All of them, so that the mistakes of all are reported.
                 let parts = array.elems.iter().map(|part| self.value(part)).collect();
-                self.row(parts)
+                self.row(parts, array)
             }
             syn::Expr::If(choice) => self.mistake(
                 choice.if_token.span,

@@ -1,10 +1,11 @@
 //! Sizes of arrays: of coordinates as `p: [N, 2]`, of fields as Rust types.
 
 use proc_macro2::{Delimiter, Group, Ident, TokenStream, TokenTree};
-use syn::parse::Parser;
+use syn::parse::{ParseStream, Parser};
 use syn::punctuated::Punctuated;
 
 use super::affine::{Integer, affine};
+use crate::budget::MOST_SIZES;
 use crate::diagnostics::Diagnostics;
 use crate::expr::Affine;
 
@@ -32,8 +33,18 @@ pub(super) fn sizes(name: &Ident, group: &Group, diagnostics: &mut Diagnostics) 
         diagnostics.report(group.span(), message);
         return None;
     }
-    let parser = Punctuated::<syn::Expr, syn::Token![,]>::parse_terminated;
-    match parser.parse2(group.stream()) {
+    // With its brackets, so that a size that breaks off is reported there.
+    let parser = |input: ParseStream| {
+        let inside;
+        syn::bracketed!(inside in input);
+        Punctuated::<syn::Expr, syn::Token![,]>::parse_terminated(&inside)
+    };
+    match parser.parse2(TokenTree::Group(group.clone()).into()) {
+        Ok(sizes) if sizes.len() > MOST_SIZES => {
+            let message = format!("`{name}` has {} sizes, an array at most {MOST_SIZES}", sizes.len());
+            diagnostics.report(group.span(), message);
+            None
+        }
         Ok(sizes) => sizes.iter().map(|expression| size(expression, diagnostics)).collect(),
         Err(error) => {
             // `[f64; 3]`, the type of a field.

@@ -22,8 +22,10 @@ impl<R: Resolver> Lowering<'_, R> {
                 index.ident.clone()
             }
             _ => {
-                return self.mistake_over(
-                    &closure.inputs,
+                // From bar to bar, since between them there may be nothing.
+                return self.mistake_between(
+                    closure.inputs_begin.span,
+                    closure.inputs_end.span,
                     "a sum goes over one index: write `|i|`, and a `sum` inside for a second one",
                 );
             }

@@ -4,6 +4,7 @@
 
 use super::expression::{Lowering, Resolver};
 use super::spine::{first_span, last_span};
+use crate::budget::{LONGEST_VECTOR, MOST_SIZES};
 use crate::expr::{Affine, Binary, Composite, Dependence, ExprId, Unary, Value, View};
 
 /// The functions of vectors.
@@ -52,6 +53,14 @@ impl<R: Resolver> Lowering<'_, R> {
                 size.print(crate::expr::Notation::Unicode)
             ));
         };
+        if view.n_numbers() > LONGEST_VECTOR {
+            return Err(format!(
+                "`{}` has {} numbers, a vector that is written out at most {LONGEST_VECTOR}: write one of its elements, or go over \
+                 them with `sum`",
+                view.name,
+                view.n_numbers()
+            ));
+        }
         let element = |lowering: &mut Self, index| lowering.elements(view.clone().at(Affine::number(index)));
         (0..size).map(|index| element(self, index)).collect::<Result<_, _>>().map(Value::Vector)
     }
@@ -100,9 +109,21 @@ impl<R: Resolver> Lowering<'_, R> {
         })
     }
 
-    /// A vector from its elements.
-    pub(super) fn row(&mut self, values: Vec<Option<Value>>) -> Option<Value> {
+    /// A vector from its elements, as it is written in `literal`.
+    pub(super) fn row(&mut self, values: Vec<Option<Value>>, literal: &syn::ExprArray) -> Option<Value> {
         let values: Vec<Value> = values.into_iter().collect::<Option<_>>()?;
+        if values.iter().any(|value| value.n_levels() >= MOST_SIZES) {
+            let message = format!("vectors of vectors have at most {MOST_SIZES} levels");
+            return self.mistake_over(literal, message);
+        }
+        // They multiply with every line that is written.
+        let n_numbers = values.iter().map(Value::n_numbers).fold(0, u64::saturating_add);
+        if n_numbers > LONGEST_VECTOR {
+            let message = format!(
+                "a vector of {n_numbers} numbers: at most {LONGEST_VECTOR} are written out, longer ones are arrays of coordinates or parameters"
+            );
+            return self.mistake_over(literal, message);
+        }
         if !self.graph.is_as_written() {
             return Some(Value::Vector(values));
         }

@@ -187,3 +187,35 @@ fn longest_run(tokens: TokenStream) -> usize {
     }
     longest
 }
+
+#[test]
+fn vectors_that_are_written_out_have_a_limit_with_a_message() {
+    let field = |ty: &str| {
+        let items = "coordinates(x), kinetic = der(x).powi(2), potential = x * big.dot(big)";
+        messages(&expanded_struct(format!("#[evi({items})] struct Long {{ big: {ty} }}")))
+    };
+    for ty in
+        ["[f64; 999999999999]", "[[f64; 9223372036854775807]; 9223372036854775807]", "SVector<f64, 10001>"]
+    {
+        let messages = field(ty);
+        assert!(messages.len() == 1 && messages[0].starts_with("`big` has "), "{messages:?}");
+    }
+    assert_eq!(field("[f64; 10000]"), Vec::<String>::new());
+    let repeated: String =
+        (1..7).map(|k| format!("let v{k} = [{}], ", format!("v{}, ", k - 1).repeat(8))).collect();
+    let potential = "potential = v4[0][0][0][0].norm()";
+    refused(&format!("let v0 = [x, y], {repeated} {KINETIC}, {potential}"), "a vector of 65536 numbers");
+    let nested: String = (1..20_000).map(|k| format!("let v{k} = [v{0}], ", k - 1)).collect();
+    let potential = "potential = v7[0][0][0][0][0][0][0].norm()";
+    refused(
+        &format!("let v0 = [x, y], {nested} {KINETIC}, {potential}"),
+        "vectors of vectors have at most 8 levels",
+    );
+    let sizes = "1, ".repeat(10_000);
+    let items = format!("coordinates(p: [{sizes}]), lagrangian = sum(0..1, |i| der(p[i]).norm_squared())");
+    let messages = messages(&expanded_struct(format!("#[evi({items})] struct Long;")));
+    assert!(
+        messages.iter().any(|message| message == "`p` has 10000 sizes, an array at most 8"),
+        "{messages:?}"
+    );
+}

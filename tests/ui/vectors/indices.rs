@@ -28,7 +28,8 @@ struct NotAffine { m: f64 }
     coordinates(p: [3, 2]),
     kinetic = sum(0..3, |i| der(p[i]).norm_squared()),
     potential = sum(0..count, |i| p[i][0]) + sum(3, |i| p[i][0]) + sum(0.., |i| p[i][0]) + sum(0..N, |i| p[i][0])
-        + sum(2..1, |i| p[i][0]) + sum(0..3) + sum(0..3, |i, j| p[i][0]) + sum(0..3, p[0]),
+        + sum(2..1, |i| p[i][0]) + sum(0..3) + sum(0..3, |i, j| p[i][0]) + sum(0..3, || p[0][0])
+        + sum(0..3, p[0]),
 )]
 struct Ranges { count: f64 }
 

@@ -43,4 +43,18 @@ struct Equations;
 )]
 struct Forces;
 
+#[derive(MechanicalSystem)]
+#[evi(
+    coordinates(x, p: [1, 1, 1, 1, 1, 1, 1, 1, 2]),
+    kinetic = der(x).powi(2),
+    let deep = [[[[[[[[[x]]]]]]]]],
+    let long = [big[0], big[1], big[2], big[3], big[4], big[5]],
+    potential = x * big.norm() + long[0].norm(),
+)]
+struct TooLarge { big: [[f64; 2000]; 6] }
+
+#[derive(MechanicalSystem)]
+#[evi(coordinates(x, p: [3, unsafe]), kinetic = der(x).powi(2), potential = x)]
+struct BrokenOff;
+
 fn main() {}

@@ -13,7 +13,7 @@ use crate::system::MechanicalSystem;
 /// Newton's iteration with its first guesses.
 pub(crate) struct NewtonSolve<S: MechanicalSystem, const K: usize> {
     extrapolation: Extrapolation<K>,
-    storage: NewtonStorage,
+    storage: NewtonStorage<S, K>,
     /// The points of the last step: the first guess of the next. They affect the number of corrections and the last bits of a
     /// state, nothing else.
     past: Option<Points<S, K>>,
@@ -63,7 +63,7 @@ impl<S: MechanicalSystem, const K: usize> NewtonSolve<S, K> {
         points: &Points<S, K>,
     ) -> Result<FactoredPoints<'_, S, K>, SingularMatrix> {
         let scale = action.mechanics.unit_scale(state.t, &state.q, &state.v);
-        self.storage.linearize(action, state, scale.as_ref(), points);
+        self.storage.linearize(action, state, &scale, points);
         self.storage.factors.factor(&mut self.storage.entries)?;
         Ok(FactoredPoints { storage: &mut self.storage, scale })
     }
@@ -71,7 +71,7 @@ impl<S: MechanicalSystem, const K: usize> NewtonSolve<S, K> {
 
 /// The factored matrix of the equations of a step.
 pub(crate) struct FactoredPoints<'a, S: MechanicalSystem, const K: usize> {
-    storage: &'a mut NewtonStorage,
+    storage: &'a mut NewtonStorage<S, K>,
     scale: S::PerUnknown<f64>,
 }
 
@@ -91,14 +91,9 @@ impl<S: MechanicalSystem, const K: usize> FactoredPoints<'_, S, K> {
         rows: &mut [S::PerUnknown<f64>; K],
         solve: impl FnOnce(&InPlaceLu, &[f64], &mut [f64]),
     ) {
-        let block = S::PerUnknown::<f64>::LEN;
-        for (residual, row) in self.storage.residual.chunks_exact_mut(block).zip(&*rows) {
-            residual.copy_from_slice(row.as_ref());
-        }
-        self.storage.solve_by(self.scale.as_ref(), solve);
-        for (residual, row) in self.storage.residual.chunks_exact(block).zip(rows) {
-            row.as_mut().copy_from_slice(residual);
-        }
+        self.storage.residual.clone_from_slice(rows);
+        self.storage.solve_by(&self.scale, solve);
+        rows.clone_from_slice(&self.storage.residual);
     }
 }
 
@@ -187,73 +182,79 @@ impl<S: MechanicalSystem, const K: usize> Points<S, K> {
 }
 
 /// Newton's iteration on all points at once.
-struct NewtonStorage {
+struct NewtonStorage<S: MechanicalSystem, const K: usize> {
     /// The matrix by columns; its factors while a correction is computed.
     entries: Vec<f64>,
     /// Node by node.
-    residual: Vec<f64>,
+    residual: [S::PerUnknown<f64>; K],
     /// In the order of the matrix.
     ordered: Vec<f64>,
-    /// For every place in the matrix its index node by node.
-    indices: Vec<usize>,
+    /// Where a row of the first node stands in the matrix, those of the others behind it.
+    places: S::PerUnknown<usize>,
+    /// For every place in the matrix its row.
+    rows: Vec<usize>,
     factors: InPlaceLu,
 }
 
-impl NewtonStorage {
-    fn new<S: MechanicalSystem, T: NodalTables<K>, const K: usize>(action: &GalerkinAction<S, T, K>) -> Self {
-        let block = S::N_COORDINATES + S::N_CONSTRAINTS;
-        let dimension = K * block;
-        let mut indices = vec![0; dimension];
+impl<S: MechanicalSystem, const K: usize> NewtonStorage<S, K> {
+    /// Unknowns of a node.
+    const BLOCK: usize = S::N_COORDINATES + S::N_CONSTRAINTS;
+
+    fn new<T: NodalTables<K>>(action: &GalerkinAction<S, T, K>) -> Self {
+        let dimension = K * Self::BLOCK;
+        let mut rows = vec![0; dimension];
         for index in 0..dimension {
-            indices[action.place(index / block, index % block)] = index;
+            rows[action.place(index / Self::BLOCK, index % Self::BLOCK)] = index % Self::BLOCK;
         }
+        let places = Array::from_fn(|row| action.place(0, row));
         Self {
             entries: vec![0.0; dimension * dimension],
-            residual: vec![0.0; dimension],
+            residual: core::array::from_fn(|_| Array::filled(0.0)),
             ordered: vec![0.0; dimension],
-            indices,
+            places,
+            rows,
             factors: InPlaceLu::new(dimension),
         }
     }
 
     /// Overwrites the residual, and the matrix in units in which its unknowns are comparable; returns the largest residual of a constraint.
-    fn linearize<S: MechanicalSystem, T: NodalTables<K>, const K: usize>(
+    fn linearize<T: NodalTables<K>>(
         &mut self,
         action: &GalerkinAction<S, T, K>,
         state: &State<S>,
-        scale: &[f64],
+        scale: &S::PerUnknown<f64>,
         points: &Points<S, K>,
     ) -> f64 {
-        let block = scale.len();
         let constraint_residual = action.linearize(state, points, &mut self.residual, &mut self.entries);
-        for (column, &col) in self.entries.chunks_exact_mut(self.residual.len()).zip(&self.indices) {
-            for (entry, &row) in column.iter_mut().zip(&self.indices) {
-                *entry *= scale[row % block] * scale[col % block];
+        let in_order = self.rows.iter().map(|row| scale.as_ref().get(*row).copied().unwrap_or(f64::NAN));
+        for (column, col_scale) in self.entries.chunks_exact_mut(K * Self::BLOCK).zip(in_order.clone()) {
+            for (entry, row_scale) in column.iter_mut().zip(in_order.clone()) {
+                *entry *= row_scale * col_scale;
             }
         }
         constraint_residual
     }
 
     /// Overwrites the residual with what `solve` makes of it by the factors, in their order and units.
-    fn solve_by(&mut self, scale: &[f64], solve: impl FnOnce(&InPlaceLu, &[f64], &mut [f64])) {
-        let apply_scale = |unknowns: &mut [f64]| {
-            for unknowns in unknowns.chunks_exact_mut(scale.len()) {
-                unknowns.iter_mut().zip(scale).for_each(|(unknown, scale)| *unknown *= scale);
+    fn solve_by(&mut self, scale: &S::PerUnknown<f64>, solve: impl FnOnce(&InPlaceLu, &[f64], &mut [f64])) {
+        for (node, residual) in self.residual.iter().enumerate() {
+            for row in 0..Self::BLOCK {
+                if let Some(value) = self.ordered.get_mut(self.places[row] + node) {
+                    *value = residual[row] * scale[row];
+                }
             }
-        };
-        apply_scale(&mut self.residual);
-        for (value, &index) in self.ordered.iter_mut().zip(&self.indices) {
-            *value = self.residual[index];
         }
         solve(&self.factors, &self.entries, &mut self.ordered);
-        for (value, &index) in self.ordered.iter().zip(&self.indices) {
-            self.residual[index] = *value;
+        for (node, residual) in self.residual.iter_mut().enumerate() {
+            for row in 0..Self::BLOCK {
+                let value = self.ordered.get(self.places[row] + node).copied();
+                residual[row] = value.unwrap_or(f64::NAN) * scale[row];
+            }
         }
-        apply_scale(&mut self.residual);
     }
 
     /// Corrects `points` until they solve the equations of the step from `state`.
-    fn iterate<S: MechanicalSystem, T: NodalTables<K>, const K: usize>(
+    fn iterate<T: NodalTables<K>>(
         &mut self,
         action: &GalerkinAction<S, T, K>,
         state: &State<S>,
@@ -262,29 +263,28 @@ impl NewtonStorage {
         tally: &mut impl Tally,
     ) -> Result<(), StepError> {
         let n = S::N_COORDINATES;
-        let block = n + S::N_CONSTRAINTS;
         let in_units = |x: &[f64]| length_in_units(x, scale.as_ref());
         let mut constraint_residual = 0.0;
         let mut smallest_pivot_ratio = 1.0_f64;
         tally.begin_iteration();
         let iteration = newton::iterate(|correction| {
-            constraint_residual = self.linearize(action, state, scale.as_ref(), points);
+            constraint_residual = self.linearize(action, state, scale, points);
             self.factors
                 .factor(&mut self.entries)
                 .map_err(|matrix| IterationFailure::Singular { correction, matrix })?;
             smallest_pivot_ratio = smallest_pivot_ratio.min(self.factors.pivot_ratio());
             tally.see_pivot_ratio(self.factors.pivot_ratio());
-            self.solve_by(scale.as_ref(), |factors, entries, rhs| factors.solve(entries, rhs));
+            self.solve_by(scale, |factors, entries, rhs| factors.solve(entries, rhs));
             let mut length = 0.0_f64;
             let mut reach = in_units(state.q.as_ref());
-            for (a, update) in self.residual.chunks_exact(block).enumerate() {
+            for (a, update) in self.residual.iter().enumerate() {
                 for i in 0..n {
                     points.differences[a][i] -= update[i];
                 }
                 for c in 0..S::N_CONSTRAINTS {
                     points.impulses[a][c] -= update[constraint_index::<S>(c)];
                 }
-                length = largest_magnitude([length, in_units(&update[..n])]);
+                length = largest_magnitude([length, in_units(&update.as_ref()[..n])]);
                 reach = reach.max(in_units(points.differences[a].as_ref()));
             }
             let length = relative(length, reach);

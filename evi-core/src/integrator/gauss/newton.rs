@@ -6,26 +6,27 @@
 //! ∂L/∂v(Qᵢ, Vᵢ) − p₀ − h Σⱼ Aᵢⱼ (∂L/∂q + f)(Qⱼ, Vⱼ) = 0
 //! ```
 
-use core::marker::PhantomData;
-
 use crate::array::Array;
 use crate::integrator::{IterationFailure, StepError, Tally};
 use crate::linear::{InPlaceLu, SingularMatrix, largest_magnitude};
 use crate::mechanics::{ForcePoint, GaussEnd, Mechanics, State, relative};
 use crate::newton::{self, Converged};
+use crate::scalar::LANES;
 use crate::scheme::GaussTables;
 use crate::system::MechanicalSystem;
 
 /// The iteration with its storage.
-pub(crate) struct GaussNewton<S, const K: usize> {
+pub(crate) struct GaussNewton<S: MechanicalSystem, const K: usize> {
     tables: GaussTables,
     /// The matrix by columns; its factors while a correction is computed.
     entries: Vec<f64>,
-    residual: Vec<f64>,
-    /// `Vᵢ`, node by node.
-    velocities: Vec<f64>,
+    /// Node by node.
+    residual: [S::PerCoordinate<f64>; K],
+    /// The same in the order of the matrix.
+    ordered: Vec<f64>,
+    /// `Vᵢ`.
+    velocities: [S::PerCoordinate<f64>; K],
     factors: InPlaceLu,
-    scene: PhantomData<S>,
 }
 
 impl<S: MechanicalSystem, const K: usize> GaussNewton<S, K> {
@@ -34,10 +35,10 @@ impl<S: MechanicalSystem, const K: usize> GaussNewton<S, K> {
         Self {
             tables: GaussTables::new::<K>(h),
             entries: vec![0.0; dimension * dimension],
-            residual: vec![0.0; dimension],
-            velocities: vec![0.0; dimension],
+            residual: nothing(),
+            ordered: vec![0.0; dimension],
+            velocities: nothing(),
             factors: InPlaceLu::new(dimension),
-            scene: PhantomData,
         }
     }
 
@@ -52,9 +53,7 @@ impl<S: MechanicalSystem, const K: usize> GaussNewton<S, K> {
         let scale = mechanics.unit_scale(start.t, &start.q, &start.v);
         let in_units =
             |x: &[f64]| largest_magnitude(x.iter().zip(scale.as_ref()).map(|(x, scale)| x / scale));
-        for velocities in self.velocities.chunks_exact_mut(n) {
-            velocities.copy_from_slice(start.v.as_ref());
-        }
+        self.velocities = core::array::from_fn(|_| start.v.clone());
         let h = self.tables.weights.sum().abs();
         let mut smallest_pivot_ratio = 1.0_f64;
         tally.begin_iteration();
@@ -65,15 +64,14 @@ impl<S: MechanicalSystem, const K: usize> GaussNewton<S, K> {
                 .map_err(|matrix| IterationFailure::Singular { correction, matrix })?;
             smallest_pivot_ratio = smallest_pivot_ratio.min(self.factors.pivot_ratio());
             tally.see_pivot_ratio(self.factors.pivot_ratio());
-            self.factors.solve(&self.entries, &mut self.residual);
+            self.solve_residual(|factors, entries, rhs| factors.solve(entries, rhs));
             let (mut length, mut reach) = (0.0, in_units(start.q.as_ref()));
-            for (velocities, update) in self.velocities.chunks_exact_mut(n).zip(self.residual.chunks_exact(n))
-            {
+            for (velocities, update) in self.velocities.iter_mut().zip(&self.residual) {
                 for i in 0..n {
                     velocities[i] -= update[i];
                 }
-                length = largest_magnitude([length, h * in_units(update)]);
-                reach = largest_magnitude([reach, h * in_units(velocities)]);
+                length = largest_magnitude([length, h * in_units(update.as_ref())]);
+                reach = largest_magnitude([reach, h * in_units(velocities.as_ref())]);
             }
             let length = relative(length, reach);
             tally.see_correction(|| length);
@@ -95,10 +93,9 @@ impl<S: MechanicalSystem, const K: usize> GaussNewton<S, K> {
 
     /// `tᵢ`, `Qᵢ` and `Vᵢ`.
     fn node(&self, start: &State<S>, i: usize) -> (f64, S::PerCoordinate<f64>, S::PerCoordinate<f64>) {
-        let velocity = |j: usize, k: usize| self.velocities[j * S::N_COORDINATES + k];
-        let way = |k: usize| (0..K).map(|j| self.stage(i, j) * velocity(j, k)).sum::<f64>();
+        let way = |k: usize| (0..K).map(|j| self.stage(i, j) * self.velocities[j][k]).sum::<f64>();
         let q = Array::from_fn(|k| start.q[k] + way(k));
-        (start.t + self.tables.nodes.to_array()[i], q, Array::from_fn(|k| velocity(i, k)))
+        (start.t + self.tables.nodes.to_array()[i], q, self.velocities[i].clone())
     }
 
     /// `h bᵢ`.
@@ -113,8 +110,7 @@ impl<S: MechanicalSystem, const K: usize> GaussNewton<S, K> {
 
     /// `Vᵢ` of the last step that was solved.
     pub(crate) fn velocities(&self) -> [S::PerCoordinate<f64>; K] {
-        let n = S::N_COORDINATES;
-        core::array::from_fn(|node| Array::from_fn(|k| self.velocities[node * n + k]))
+        self.velocities.clone()
     }
 
     /// Factors the matrix of the equations at these velocities of the step from `start`.
@@ -124,9 +120,7 @@ impl<S: MechanicalSystem, const K: usize> GaussNewton<S, K> {
         start: &State<S>,
         velocities: &[S::PerCoordinate<f64>; K],
     ) -> Result<(), SingularMatrix> {
-        for (own, given) in self.velocities.chunks_exact_mut(S::N_COORDINATES).zip(velocities) {
-            own.copy_from_slice(given.as_ref());
-        }
+        self.velocities.clone_from(velocities);
         self.linearize(mechanics, start);
         self.factors.factor(&mut self.entries)
     }
@@ -146,13 +140,19 @@ impl<S: MechanicalSystem, const K: usize> GaussNewton<S, K> {
         rows: &mut [S::PerCoordinate<f64>; K],
         solve: impl FnOnce(&InPlaceLu, &[f64], &mut [f64]),
     ) {
-        for (own, row) in self.residual.chunks_exact_mut(S::N_COORDINATES).zip(&*rows) {
-            own.copy_from_slice(row.as_ref());
+        self.residual.clone_from(rows);
+        self.solve_residual(solve);
+        rows.clone_from(&self.residual);
+    }
+
+    /// Overwrites the residual with what `solve` makes of it by the factors.
+    fn solve_residual(&mut self, solve: impl FnOnce(&InPlaceLu, &[f64], &mut [f64])) {
+        for (value, residual) in self.ordered.iter_mut().zip(self.residual.iter().flat_map(AsRef::as_ref)) {
+            *value = *residual;
         }
-        solve(&self.factors, &self.entries, &mut self.residual);
-        for (own, row) in self.residual.chunks_exact(S::N_COORDINATES).zip(rows) {
-            row.as_mut().copy_from_slice(own);
-        }
+        solve(&self.factors, &self.entries, &mut self.ordered);
+        let rows = self.residual.iter_mut().flat_map(AsMut::as_mut);
+        rows.zip(&self.ordered).for_each(|(residual, value)| *residual = *value);
     }
 
     /// Overwrites `residual` with the left sides of the equations and `entries` with their derivative.
@@ -160,29 +160,34 @@ impl<S: MechanicalSystem, const K: usize> GaussNewton<S, K> {
         let n = S::N_COORDINATES;
         let dimension = K * n;
         let constants = &mechanics.constants;
-        self.residual.fill(0.0);
+        self.residual = nothing();
         self.entries.fill(0.0);
+        let stages: [[f64; LANES]; K] = core::array::from_fn(|j| self.tables.stages[j].to_array());
         for node in 0..K {
             let (t, q, v) = self.node(start, node);
+            let from_node = stages[node];
+            let to_node: [f64; K] = core::array::from_fn(|j| stages[j][node]);
             let (mut gradient, hessian) = S::lagrangian_derivatives(constants, t, &q, &v);
             // What a change of `Qₘ` or `Vₘ` of node `m` does to its momentum and to its force, whose share of row `i` is `−h Aᵢₘ`.
             let mut add = |row: usize, col: usize, (of_momentum, of_force): (f64, f64), is_by_q: bool| {
                 for i in 0..K {
-                    let share = if i == node { of_momentum } else { 0.0 }
-                        - self.tables.stages[node].to_array()[i] * of_force;
+                    let share = if i == node { of_momentum } else { 0.0 } - from_node[i] * of_force;
                     for j in 0..K {
                         let way = if is_by_q {
-                            self.tables.stages[j].to_array()[node]
+                            to_node[j]
                         } else if j == node {
                             1.0
                         } else {
                             0.0
                         };
-                        self.entries[(j * n + col) * dimension + i * n + row] += share * way;
+                        // There is one for every row and column, which the optimiser need not find out.
+                        if let Some(entry) = self.entries.get_mut((j * n + col) * dimension + i * n + row) {
+                            *entry += share * way;
+                        }
                     }
                 }
             };
-            let value = |entry: &crate::system::Entry| entry.value(constants.as_ref(), hessian.as_ref());
+            let value = |entry: &crate::system::Entry| entry.number(constants.as_ref(), hessian.as_ref());
             for entry in S::STRUCTURE.hessian.qq {
                 add(entry.row, entry.col, (0.0, value(entry)), true);
                 if entry.row != entry.col {
@@ -206,9 +211,9 @@ impl<S: MechanicalSystem, const K: usize> GaussNewton<S, K> {
                 derivatives.for_each_by_v(|row, col, value| add(row, col, (0.0, value), false));
             }
             for k in 0..n {
-                self.residual[node * n + k] += gradient.momentum[k] - start.p[k];
+                self.residual[node][k] += gradient.momentum[k] - start.p[k];
                 for i in 0..K {
-                    self.residual[i * n + k] -= self.tables.stages[node].to_array()[i] * gradient.force[k];
+                    self.residual[i][k] -= from_node[i] * gradient.force[k];
                 }
             }
         }
@@ -229,4 +234,9 @@ impl<S: MechanicalSystem, const K: usize> GaussNewton<S, K> {
         }
         GaussEnd { difference, gain, passes }
     }
+}
+
+/// Zeros, one per coordinate at every node.
+fn nothing<A: Array<f64>, const K: usize>() -> [A; K] {
+    core::array::from_fn(|_| A::filled(0.0))
 }
