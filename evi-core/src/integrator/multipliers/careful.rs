@@ -23,7 +23,7 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'_, S, F, R>
         tally: &mut impl Tally,
     ) -> Result<[Lost<S, R>; 2], StepError> {
         let carried_on = match attempt {
-            Some(attempt) => self.continue_from(attempt, tally)?,
+            Some(attempt) => self.continue_from(attempt, &history.predicted, tally)?,
             None => None,
         };
         let (expected, mut landing) = match carried_on {
@@ -32,7 +32,7 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'_, S, F, R>
                 let none = S::PerConstraint::<f64>::from_fn(|_| 0.0);
                 self.expect_nothing(&state.p);
                 tally.begin_iteration();
-                let landing = self.iterate(0, none.clone(), self.end(), none.clone(), tally)?;
+                let landing = self.iterate(0, none.clone(), self.end(), [&none, &none], tally)?;
                 (none, landing)
             }
         };
@@ -47,10 +47,11 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'_, S, F, R>
     fn continue_from(
         &self,
         Attempt { q, correction, residuals: [first, second], .. }: Attempt<S, R::Sum>,
+        expected: &S::PerConstraint<f64>,
         tally: &mut impl Tally,
     ) -> Result<Option<Landing<S, R::Sum>>, StepError> {
         let impulse = correction.impulse;
-        let scale = self.scale(&q);
+        let scale = self.scale(&q, [expected, &impulse]);
         tally.begin_iteration();
         tally.see_correction(|| relative_length::<S>(&first, &scale));
         tally.see_correction(|| relative_length::<S>(&second, &scale));
@@ -60,7 +61,7 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'_, S, F, R>
         let slowest = newton::SLOWEST_CHORD * relative_length::<S>(&first, &scale);
         // Written so that a NaN does not contract.
         let contracts = relative_length::<S>(&second, &scale) <= slowest.max(newton::CHORD_ROUND_OFF);
-        Ok(if contracts { self.iterate(CHORDS, second, q, impulse, tally).ok() } else { None })
+        Ok(if contracts { self.iterate(CHORDS, second, q, [expected, &impulse], tally).ok() } else { None })
     }
 
     /// The landing at `q`, where `φ = 0`.
@@ -78,17 +79,19 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'_, S, F, R>
         }
     }
 
-    /// Newton's iteration from `q = q₁(ℓ₀ + c)` for the `impulse` `c`, with a fresh matrix for every correction. `previous` is the residual that the
+    /// Newton's iteration from `q = q₁(ℓ₀ + c)` for `c`, with a fresh matrix for every correction. `previous` is the residual that the
     /// last of the `corrections` so far was made for, 0 if there was none.
     fn iterate(
         &self,
         corrections: usize,
         mut previous: S::PerConstraint<f64>,
         mut q: R::Sum,
-        mut impulse: S::PerConstraint<f64>,
+        [expected, begun]: [&S::PerConstraint<f64>; 2],
         tally: &mut impl Tally,
     ) -> Result<Landing<S, R::Sum>, StepError> {
-        let mut progress = Progress::after(relative_length::<S>(&previous, &self.scale(&q)));
+        let mut impulse = begun.clone();
+        let scale = self.scale(&q, [expected, begun]);
+        let mut progress = Progress::after(relative_length::<S>(&previous, &scale));
         loop {
             let (residual, jacobian) = self.constraints_at(&q);
             let matrix = self.mechanics.gram_matrix::<F::Coupling>(&jacobian, &self.directions);
@@ -99,7 +102,7 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'_, S, F, R>
             if gram.is_fallback() {
                 tally.count_fallback();
             }
-            let scale = self.scale(&q);
+            let scale = self.scale(&q, [expected, &impulse]);
             let correction = self.correction(&gram, &residual);
             move_by::<S, _>(&mut q, &correction.moved);
             impulse = Array::from_fn(|c| impulse[c] + correction.impulse[c]);

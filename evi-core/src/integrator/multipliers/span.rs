@@ -139,10 +139,27 @@ impl<'a, S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'a, S, F
     }
 
     /// What the residuals at `end` are compared with: `Σᵢ |G_ci| rᵢ`, where `rᵢ` adds up the magnitudes of what `q₁` is
-    /// found from.
-    pub(super) fn scale(&self, end: &R::Sum) -> S::PerConstraint<f64> {
+    /// found from, the displacements by the impulse `ℓ₀ + c` of every constraint among them: they alone are left where a constraint holds a coordinate at 0.
+    pub(super) fn scale(
+        &self,
+        end: &R::Sum,
+        [expected, correction]: [&S::PerConstraint<f64>; 2],
+    ) -> S::PerConstraint<f64> {
         let (start, end) = (&self.start, end.value());
-        let reach = Array::from_fn(|i| start[i].abs() + self.difference[i].abs() + end.borrow()[i].abs());
+        let mut reach: S::PerCoordinate<f64> =
+            Array::from_fn(|i| start[i].abs() + self.difference[i].abs() + end.borrow()[i].abs());
+        let impulse = |c: usize| expected[c] + correction[c];
+        if F::Coupling::IS_DIAGONAL {
+            S::for_each_slope(&self.mechanics.constants, &self.jacobian, |row, col, _| {
+                reach[col] += (self.directions[row][col] * impulse(row)).abs();
+            });
+        } else {
+            for c in 0..S::N_CONSTRAINTS {
+                for i in 0..S::N_COORDINATES {
+                    reach[i] += (self.directions[c][i] * impulse(c)).abs();
+                }
+            }
+        }
         self.mechanics.constraint_scale(&self.jacobian, &reach)
     }
 }
