@@ -4,7 +4,8 @@
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 
-use super::implementation::{Kernels, compiled, dependence, entries, operations};
+use super::functions::{Kernels, compiled};
+use super::structure::{dependence, entries, operations};
 use crate::model::Model;
 use crate::schedule::{ForcePrograms, Program, Programs};
 use crate::structure::Structure;

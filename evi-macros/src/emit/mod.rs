@@ -6,6 +6,7 @@ mod assembled;
 mod elimination;
 mod fallback;
 mod forces;
+mod functions;
 mod generic;
 mod generic_graph;
 mod implementation;
@@ -15,6 +16,7 @@ mod patterns;
 mod pieces;
 mod report;
 mod storage;
+mod structure;
 mod subject;
 
 pub(crate) use assembled::assembled;

@@ -3,7 +3,7 @@
 use proc_macro2::TokenStream;
 use quote::quote;
 
-use super::implementation::operations;
+use super::structure::operations;
 use crate::model::{Formula, WrittenEquation};
 use crate::schedule::Programs;
 
