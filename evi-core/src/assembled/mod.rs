@@ -107,4 +107,6 @@ pub use sparse::Effort;
 pub use start::AssembledSimulation;
 pub use state::AssembledState;
 pub use system::{AssembledSystem, Family, FamilyVisitor, ObservedVisitor};
+#[cfg(feature = "parquet")]
+pub use writer::ParquetStates;
 pub use writer::StateWriter;

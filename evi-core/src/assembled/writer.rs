@@ -1,4 +1,4 @@
-//! Sampled states as rows of comma-separated values, written as they come.
+//! Sampled states as rows, written as they come: comma-separated values, or Parquet with the feature `parquet`.
 
 use std::io::{self, Write};
 
@@ -68,24 +68,9 @@ impl<W: Write> StateWriter<W> {
         M: AssembledStep,
         T: Tally,
     {
-        let coordinates: Vec<usize> = coordinates.into_iter().collect();
-        let n = run.state().q().len();
-        if let Some(index) = coordinates.iter().find(|&&index| index >= n) {
-            let message = format!("there is no coordinate {index}: the scene has {n}");
-            return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
-        }
-        write!(out, "t,energy")?;
-        for name in S::OBSERVABLES {
-            write!(out, ",{}", quoted((*name).to_owned()))?;
-        }
-        let name = |index: &usize| run.system().coordinate_name(*index);
-        for name in coordinates.iter().map(name) {
-            write!(out, ",{}", quoted(name))?;
-        }
-        for name in coordinates.iter().map(name) {
-            write!(out, ",{}", quoted(format!("der({name})")))?;
-        }
-        writeln!(out)?;
+        let coordinates = checked(run, coordinates)?;
+        let names: Vec<String> = names(run, &coordinates).map(quoted).collect();
+        writeln!(out, "{}", names.join(","))?;
         Ok(Self { out, coordinates })
     }
 
@@ -99,18 +84,133 @@ impl<W: Write> StateWriter<W> {
         M: AssembledStep,
         T: Tally,
     {
-        let state = run.state();
-        write!(self.out, "{},{}", state.t(), run.energy())?;
-        for value in run.observe() {
-            write!(self.out, ",{value}")?;
-        }
-        for values in [state.q(), state.v()] {
-            for &index in &self.coordinates {
-                write!(self.out, ",{}", values[index])?;
-            }
+        let mut separator = "";
+        for value in row(run, &self.coordinates) {
+            write!(self.out, "{separator}{value}")?;
+            separator = ",";
         }
         writeln!(self.out)
     }
+}
+
+/// The same rows as a Parquet file. [`finish`](Self::finish) ends it.
+///
+/// ```
+/// # use evi_core::assembled::{AssembledSimulation, AssembledSystem, Family, FamilyVisitor, ParquetStates};
+/// # use evi_core::prelude::*;
+/// # #[derive(MechanicalSystem, Clone)]
+/// # #[evi(coordinates(x), kinetic = 0.5 * der(x).powi(2), potential = 0.5 * k * x.powi(2))]
+/// # struct Spring { k: f64 }
+/// # #[derive(Clone)]
+/// # struct Springs(Vec<f64>);
+/// # impl Family<Springs> for Spring {
+/// #     type Element = Self;
+/// #     fn count(springs: &Springs) -> usize { springs.0.len() }
+/// #     fn element(springs: &Springs, i: usize) -> Self { Self { k: springs.0[i] } }
+/// #     fn coordinates(_: &Springs, i: usize) -> [usize; 1] { [i] }
+/// # }
+/// # impl AssembledSystem for Springs {
+/// #     fn n_coordinates(&self) -> usize { self.0.len() }
+/// #     fn visit_families<V: FamilyVisitor<Self>>(&self, visitor: &mut V) { visitor.family::<Spring>() }
+/// # }
+/// # let simulation = AssembledSimulation::new(Springs(vec![1.0, 4.0]), Evi::midpoint(0.01));
+/// let mut run = simulation.start([1.0, 0.5], [0.0; 2])?;
+/// let mut states = ParquetStates::of(&run, Vec::new(), [1])?;
+/// run.advance_sampled(0.3, 10, |run| -> Result<(), Box<dyn std::error::Error>> { Ok(states.write(run)?) })?;
+/// let file = states.finish()?;
+/// assert!(file.starts_with(b"PAR1") && file.ends_with(b"PAR1"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[cfg(feature = "parquet")]
+pub struct ParquetStates<W: Write + Send> {
+    rows: crate::columns::ParquetRows<W>,
+    coordinates: Vec<usize>,
+}
+
+#[cfg(feature = "parquet")]
+impl<W: Write + Send> ParquetStates<W> {
+    /// A file for some coordinates of a run.
+    ///
+    /// # Errors
+    /// As for [`StateWriter::of`]; those of the format are [`io::ErrorKind::Other`].
+    pub fn of<S, M, T>(
+        run: &AssembledRun<S, M, T>,
+        out: W,
+        coordinates: impl IntoIterator<Item = usize>,
+    ) -> io::Result<Self>
+    where
+        S: AssembledSystem,
+        M: AssembledStep,
+        T: Tally,
+    {
+        let coordinates = checked(run, coordinates)?;
+        let columns: Vec<_> = names(run, &coordinates).map(crate::columns::Column::number).collect();
+        let rows = crate::columns::ParquetRows::new(&columns, out).map_err(io::Error::other)?;
+        Ok(Self { rows, coordinates })
+    }
+
+    /// Adds the state that a run has reached.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn write<S, M, T>(&mut self, run: &AssembledRun<S, M, T>) -> io::Result<()>
+    where
+        S: AssembledSystem,
+        M: AssembledStep,
+        T: Tally,
+    {
+        self.rows.push(row(run, &self.coordinates)).map_err(io::Error::other)
+    }
+
+    /// Ends the file, which cannot be read without.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn finish(self) -> io::Result<W> {
+        self.rows.finish().map_err(io::Error::other)
+    }
+}
+
+/// The coordinates, if the scene has them.
+fn checked<S: AssembledSystem, M: AssembledStep, T: Tally>(
+    run: &AssembledRun<S, M, T>,
+    coordinates: impl IntoIterator<Item = usize>,
+) -> io::Result<Vec<usize>> {
+    let coordinates: Vec<usize> = coordinates.into_iter().collect();
+    let n = run.state().q().len();
+    match coordinates.iter().find(|&&index| index >= n) {
+        Some(index) => {
+            let message = format!("there is no coordinate {index}: the scene has {n}");
+            Err(io::Error::new(io::ErrorKind::InvalidInput, message))
+        }
+        None => Ok(coordinates),
+    }
+}
+
+/// Names of the columns.
+fn names<S: AssembledSystem, M: AssembledStep, T: Tally>(
+    run: &AssembledRun<S, M, T>,
+    coordinates: &[usize],
+) -> impl Iterator<Item = String> {
+    let name = |index: &usize| run.system().coordinate_name(*index);
+    let observed = S::OBSERVABLES.iter().map(|name| (*name).to_owned());
+    let rates = coordinates.iter().map(move |index| format!("der({})", name(index)));
+    ["t", "energy"]
+        .map(str::to_owned)
+        .into_iter()
+        .chain(observed)
+        .chain(coordinates.iter().map(name))
+        .chain(rates)
+}
+
+/// Time, energy, observed quantities, positions and velocities.
+fn row<S: AssembledSystem, M: AssembledStep, T: Tally>(
+    run: &AssembledRun<S, M, T>,
+    coordinates: &[usize],
+) -> impl Iterator<Item = f64> {
+    let state = run.state();
+    let of = |values: &[f64]| -> Vec<f64> { coordinates.iter().map(|&index| values[index]).collect() };
+    [state.t(), run.energy()].into_iter().chain(run.observe()).chain(of(state.q())).chain(of(state.v()))
 }
 
 /// A name as a field: between quotes where it has a comma or a quote.

@@ -12,6 +12,8 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
+#[cfg(feature = "parquet")]
+pub use self::parquet::ParquetRows;
 pub use self::table::{Column, ColumnKind, Table};
 
 /// A table that cannot be written. The file is as it was.

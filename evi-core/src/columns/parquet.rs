@@ -10,36 +10,90 @@ use ::parquet::file::properties::WriterProperties;
 use ::parquet::file::writer::SerializedFileWriter;
 use ::parquet::schema::types::Type;
 
-use super::table::{ColumnKind, Table};
+use super::table::{Column, ColumnKind, Table};
 
-/// Rows that readers take at a time.
-const GROUP: usize = 1 << 16;
+/// Numbers that are held until a group of rows is written, which readers take at a time.
+const HELD: usize = 1 << 20;
 
 pub(super) fn write(table: &Table, out: &mut (impl Write + Send)) -> Result<()> {
-    let fields = table.columns().iter().map(|column| {
-        let physical = match column.kind {
-            ColumnKind::Index => Physical::INT64,
-            ColumnKind::Number => Physical::DOUBLE,
-        };
-        let field = Type::primitive_type_builder(&column.name, physical);
-        field.with_repetition(Repetition::REQUIRED).build().map(Arc::new)
-    });
-    let fields = fields.collect::<Result<Vec<_>>>()?;
-    let schema = Arc::new(Type::group_type_builder("rows").with_fields(fields).build()?);
-    let properties = Arc::new(WriterProperties::builder().build());
-    let mut writer = SerializedFileWriter::new(out, schema, properties)?;
-    let rows: Vec<&[f64]> = table.rows().collect();
-    for group in rows.chunks(GROUP) {
+    let mut rows = ParquetRows::new(table.columns(), out)?;
+    for row in table.rows() {
+        rows.push(row.iter().copied())?;
+    }
+    rows.finish().map(drop)
+}
+
+/// Rows that are written as they come, a group of up to 8 MB at a time.
+///
+/// A Parquet file ends with the places of its groups: without [`finish`](Self::finish) it cannot be read.
+pub struct ParquetRows<W: Write + Send> {
+    writer: SerializedFileWriter<W>,
+    kinds: Vec<ColumnKind>,
+    /// Row by row.
+    held: Vec<f64>,
+}
+
+impl<W: Write + Send> ParquetRows<W> {
+    /// A file of rows with these columns.
+    ///
+    /// # Errors
+    /// Those of the format, as for a name that is given twice, and of the writer.
+    pub fn new(columns: &[Column], out: W) -> Result<Self> {
+        let fields = columns.iter().map(|column| {
+            let physical = match column.kind {
+                ColumnKind::Index => Physical::INT64,
+                ColumnKind::Number => Physical::DOUBLE,
+            };
+            let field = Type::primitive_type_builder(&column.name, physical);
+            field.with_repetition(Repetition::REQUIRED).build().map(Arc::new)
+        });
+        let fields = fields.collect::<Result<Vec<_>>>()?;
+        let schema = Arc::new(Type::group_type_builder("rows").with_fields(fields).build()?);
+        let properties = Arc::new(WriterProperties::builder().build());
+        let writer = SerializedFileWriter::new(out, schema, properties)?;
+        Ok(Self { writer, kinds: columns.iter().map(|column| column.kind).collect(), held: Vec::new() })
+    }
+
+    /// Adds a row.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    ///
+    /// # Panics
+    /// If it has not one number per column.
+    pub fn push(&mut self, row: impl IntoIterator<Item = f64>) -> Result<()> {
+        self.held.extend(row);
+        assert!(self.held.len().is_multiple_of(self.kinds.len()), "a row has one number per column");
+        if self.held.len() >= HELD { self.write_group() } else { Ok(()) }
+    }
+
+    /// Writes what is held, and the end of the file.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn finish(mut self) -> Result<W> {
+        self.write_group()?;
+        let mut out = self.writer.into_inner()?;
+        out.flush()?;
+        Ok(out)
+    }
+
+    fn write_group(&mut self) -> Result<()> {
+        let Self { writer, kinds, held } = self;
+        if held.is_empty() {
+            return Ok(());
+        }
         let mut columns = writer.next_row_group()?;
         let mut place = 0;
         while let Some(mut column) = columns.next_column()? {
-            match table.columns()[place].kind {
+            let cells = held.iter().skip(place).step_by(kinds.len());
+            match kinds[place] {
                 ColumnKind::Index => {
-                    let cells: Vec<i64> = group.iter().map(|row| row[place] as i64).collect();
+                    let cells: Vec<i64> = cells.map(|cell| *cell as i64).collect();
                     column.typed::<Int64Type>().write_batch(&cells, None, None)?;
                 }
                 ColumnKind::Number => {
-                    let cells: Vec<f64> = group.iter().map(|row| row[place]).collect();
+                    let cells: Vec<f64> = cells.copied().collect();
                     column.typed::<DoubleType>().write_batch(&cells, None, None)?;
                 }
             }
@@ -47,9 +101,9 @@ pub(super) fn write(table: &Table, out: &mut (impl Write + Send)) -> Result<()> 
             place += 1;
         }
         columns.close()?;
+        held.clear();
+        Ok(())
     }
-    writer.close()?;
-    Ok(())
 }
 
 #[cfg(test)]
