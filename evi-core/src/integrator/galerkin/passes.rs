@@ -17,6 +17,9 @@ use crate::system::MechanicalSystem;
 /// Ends are on the constraints and on the hidden ones to round-off. What is farther beside them than this share of their terms has been projected
 /// with a matrix that does not determine it, as of masses whose ratio is no number.
 const BESIDE: f64 = 1e-3;
+/// Velocities that leave the constraints by more than this share are projected once more: the matrix is that of the end before its last displacement, which
+/// in a motion that diverges is long.
+const REST: f64 = 64.0 * f64::EPSILON;
 /// Ends whose passes stop at more than this are projected twice: what the first projection leaves is the square of it.
 pub(crate) const ROUGH: f64 = 1e-8;
 /// Of the configuration, a length far above round-off and far below a step.
@@ -131,12 +134,16 @@ impl<S: MechanicalSystem, const K: usize> NodePasses<S> for LanePasses<S, K> {
         let gain = self.step.momentum_gain(mechanics, (state, t), &q);
         let momentum = round_off.momentum(&state.p).plus(&gain);
         let unexpected = S::PerConstraint::<f64>::filled(0.0);
-        let (v, momentum) = legendre.project(mechanics, &gram, &jacobian, &unexpected, momentum);
+        let (mut v, mut momentum) = legendre.project(mechanics, &gram, &jacobian, &unexpected, momentum);
         // Round-off of the whole configuration passes, also where the constraint's own coordinates are zero, or at rest.
         let slight = SLIGHT * largest_magnitude(q.as_ref().iter().copied());
         let reach = Array::from_fn(|i| q[i].abs() + end.difference[i].abs() + slight);
         let speeds = Array::from_fn(|i| v[i].abs() + (end.difference[i].abs() + slight) / self.h.abs());
-        let rate = mechanics.constraint_rate(&jacobian, &v);
+        let mut rate = mechanics.constraint_rate(&jacobian, &v);
+        if mechanics.share_beside(&jacobian, &speeds, &rate) > REST {
+            (v, momentum) = legendre.project(mechanics, &gram, &jacobian, &unexpected, momentum);
+            rate = mechanics.constraint_rate(&jacobian, &v);
+        }
         for (reach, residual) in [(&reach, &left), (&speeds, &rate)] {
             let beside = mechanics.share_beside(&jacobian, reach, residual);
             // Written so that a NaN is refused.
