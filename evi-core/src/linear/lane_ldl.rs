@@ -3,7 +3,7 @@
 use core::marker::PhantomData;
 
 use crate::array::Array;
-use crate::scalar::Lanes;
+use crate::scalar::{Lanes, Scalar};
 use crate::system::MechanicalSystem;
 
 /// Gram matrices of the constraints, `G M⁻¹ Gᵀ`.
@@ -112,4 +112,29 @@ impl<V: Array<Lanes>, M: Array<V>, F: Array<usize>> LaneLdl<V, M, F> {
             }
         }
     }
+}
+/// Overwrites `mass` with the factors of the mass matrices of eight nodes, and returns the magnitudes of their diagonals.
+#[inline(always)]
+pub(crate) fn factor_mass<S: MechanicalSystem, const FUSED: bool>(
+    mass: &mut LaneMass<S>,
+    constants: &S::PerConstant<Lanes>,
+    hessian: &S::PerHessianEntry<Lanes>,
+) -> S::PerCoordinate<Lanes> {
+    let mut inertia = S::PerCoordinate::<Lanes>::filled(Lanes::ZERO);
+    mass.clear();
+    S::for_each_vv(
+        constants,
+        hessian,
+        #[inline(always)]
+        |row, col, value| {
+            if row >= col {
+                mass.set(row, col, value);
+            }
+            if row == col {
+                inertia[row] = Scalar::abs(value);
+            }
+        },
+    );
+    mass.factor::<FUSED>();
+    inertia
 }

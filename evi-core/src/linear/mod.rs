@@ -28,7 +28,7 @@ pub use elimination::{Elimination, Guarded, reciprocal_pivot};
 pub(crate) use in_place::InPlaceLu;
 pub(crate) use kkt::{FactoredKkt, Kkt, constraint_index, reciprocal_power_of_two, unknowns};
 #[cfg(feature = "std")]
-pub(crate) use lane_ldl::{LaneGram, LaneMass};
+pub(crate) use lane_ldl::{LaneGram, LaneMass, factor_mass};
 pub use null_space::NullSpace;
 #[cfg(feature = "std")]
 pub(crate) use ordering::band_places;

@@ -12,7 +12,7 @@
 use super::lane_step::{product, reach};
 use super::{Mechanics, State};
 use crate::array::Array;
-use crate::linear::LaneMass;
+use crate::linear::{LaneMass, factor_mass};
 use crate::newton::{LinearProgress, NotConverged};
 use crate::scalar::{LaneOperation, Lanes, Scalar};
 use crate::scheme::{GaussTables, PAST};
@@ -100,23 +100,7 @@ impl<S: MechanicalSystem, const K: usize> GaussPasses<S, K> {
         loop {
             let (mut gradient, hessian) = S::lagrangian_derivatives(&self.constants, times, &q, &velocities);
             self.add_forces(start, times, &q, &velocities, &mut gradient.force);
-            let mut inertia: Nodes<S> = Array::filled(Lanes::ZERO);
-            self.mass.clear();
-            let mass = &mut self.mass;
-            S::for_each_vv(
-                &self.constants,
-                &hessian,
-                #[inline(always)]
-                |row, col, value| {
-                    if row >= col {
-                        mass.set(row, col, value);
-                    }
-                    if row == col {
-                        inertia[row] = value;
-                    }
-                },
-            );
-            self.mass.factor::<FUSED>();
+            let inertia = factor_mass::<S, FUSED>(&mut self.mass, &self.constants, &hessian);
             let mut correction: Nodes<S> = Array::filled(Lanes::ZERO);
             for i in 0..n {
                 let p = product::<K, FUSED>(&self.tables.stages, gradient.force[i], Lanes::splat(start.p[i]));
@@ -126,7 +110,7 @@ impl<S: MechanicalSystem, const K: usize> GaussPasses<S, K> {
             // Squares of lengths in the metric of the mass matrix: what the nodes move by, where they are, and how fast they are.
             let (mut moves, mut here, mut speed) = (Lanes::ZERO, Lanes::ZERO, Lanes::ZERO);
             for i in 0..n {
-                let inertia = Scalar::abs(inertia[i]);
+                let inertia = inertia[i];
                 velocities[i] = velocities[i] + correction[i];
                 moves = (inertia * correction[i]).times_plus::<FUSED>(correction[i], moves);
                 here = (inertia * q[i]).times_plus::<FUSED>(q[i], here);

@@ -22,7 +22,7 @@ use super::lane_step::{from_start, nothing, product, reach};
 use super::point_guess::{FirstPoints, NodeMotion, NodeMultipliers, Nodes, PointGuess};
 use super::{ForcePoint, Mechanics, State};
 use crate::array::Array;
-use crate::linear::{LaneGram, LaneMass};
+use crate::linear::{LaneGram, LaneMass, factor_mass};
 use crate::newton::{LinearProgress, NotConverged};
 use crate::scalar::{LaneOperation, Lanes, Scalar};
 use crate::scheme::PointTables;
@@ -220,25 +220,8 @@ impl<S: MechanicalSystem, const K: usize> PointPasses<S, K> {
     /// Factors the mass matrices, and returns the magnitudes of their diagonals.
     #[inline(always)]
     fn factor_mass<const FUSED: bool>(&mut self, times: Lanes, q: &Nodes<S>, v: &Nodes<S>) -> Nodes<S> {
-        let mut inertia: Nodes<S> = nothing();
         let (_, hessian) = S::lagrangian_derivatives(&self.constants, times, q, v);
-        self.mass.clear();
-        let mass = &mut self.mass;
-        S::for_each_vv(
-            &self.constants,
-            &hessian,
-            #[inline(always)]
-            |row, col, value| {
-                if row >= col {
-                    mass.set(row, col, value);
-                }
-                if row == col {
-                    inertia[row] = Scalar::abs(value);
-                }
-            },
-        );
-        self.mass.factor::<FUSED>();
-        inertia
+        factor_mass::<S, FUSED>(&mut self.mass, &self.constants, &hessian)
     }
 
     #[inline(always)]

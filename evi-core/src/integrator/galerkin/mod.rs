@@ -80,7 +80,8 @@ impl<const K: usize, F> Galerkin<K, F> {
 
     /// Ends the passes of a step where the next one would move no point by more than `tolerance` of the configuration, instead of at round-off. What a
     /// step keeps exactly it then keeps to that tolerance, but for the constraints and the hidden ones, which hold to round-off; as long as it is
-    /// well below the error of a step, runs end as near to the truth, after fewer passes. A tolerance below round-off is round-off.
+    /// well below the error of a step, runs end as near to the truth, after fewer passes. A tolerance below round-off is round-off; steps whose mass depends on
+    /// positions, and those of scenes of many bodies, are solved to round-off whatever it is.
     #[must_use]
     pub fn solved_to(self, tolerance: f64) -> Self {
         // Written so that a NaN is round-off.

@@ -139,13 +139,15 @@ impl<S: MechanicalSystem, const K: usize> NodePasses<S> for LanePasses<S, K> {
         let slight = SLIGHT * largest_magnitude(q.as_ref().iter().copied());
         let reach = Array::from_fn(|i| q[i].abs() + end.difference[i].abs() + slight);
         let speeds = Array::from_fn(|i| v[i].abs() + (end.difference[i].abs() + slight) / self.h.abs());
-        let mut rate = mechanics.constraint_rate(&jacobian, &v);
-        if mechanics.share_beside(&jacobian, &speeds, &rate) > REST {
+        let leaving = |v: &S::PerCoordinate<f64>| {
+            mechanics.share_beside(&jacobian, &speeds, &mechanics.constraint_rate(&jacobian, v))
+        };
+        let mut rate = leaving(&v);
+        if rate > REST {
             (v, momentum) = legendre.project(mechanics, &gram, &jacobian, &unexpected, momentum);
-            rate = mechanics.constraint_rate(&jacobian, &v);
+            rate = leaving(&v);
         }
-        for (reach, residual) in [(&reach, &left), (&speeds, &rate)] {
-            let beside = mechanics.share_beside(&jacobian, reach, residual);
+        for beside in [mechanics.share_beside(&jacobian, &reach, &left), rate] {
             // Written so that a NaN is refused.
             let is_on_constraints = beside <= BESIDE;
             if !is_on_constraints {
