@@ -11,7 +11,10 @@
 
 use evi_examples::{DoublePendulum, Start};
 
-use super::{HandWritten, MAX_CORRECTIONS, are_finite, difference, dot, extrapolated, sum, times};
+use super::{
+    HandWritten, LARGEST_REST, MAX_CORRECTIONS, are_finite, difference, dot, expected_at_end, extrapolated,
+    sum, times,
+};
 
 /// A run of the double pendulum.
 pub struct HandWrittenDoublePendulum {
@@ -36,6 +39,8 @@ pub struct HandWrittenDoublePendulum {
     bounds: [f64; 2],
     /// A residual below this is round-off.
     round_off: f64,
+    /// `LARGEST_REST` for energies in units of `m₂/h²` beside removed ones in units of `m₁/h²`.
+    slow: f64,
     /// `(μ, ν)` of the last four steps, newest first.
     multipliers: [[f64; 4]; 2],
 }
@@ -52,6 +57,21 @@ impl Slopes {
     fn correction(&self, f: [f64; 2]) -> [f64; 2] {
         self.adjugate.map(|row| dot(row, f) * self.r)
     }
+}
+
+/// The rods at the end of a step, `a·b`, and `1/(β l₁² l₂² − (a·b)²)`.
+struct Ends {
+    a: [f64; 2],
+    b: [f64; 2],
+    cosine: f64,
+    r: f64,
+}
+
+/// What the multipliers `(μ, ν)` along the rods `a`, `b` add to `−wₐ` and to `w_b`.
+#[inline(always)]
+fn pull_of([a, b]: [[f64; 2]; 2], mass_ratio: f64, [mu, nu]: [f64; 2]) -> [[f64; 2]; 2] {
+    let along_a = times(mu, a);
+    [difference(along_a, times(nu, b)), difference(along_a, times(mass_ratio * nu, b))]
 }
 
 impl HandWrittenDoublePendulum {
@@ -73,15 +93,30 @@ impl HandWrittenDoublePendulum {
             both: mass_ratio * squared_lengths[0] * squared_lengths[1],
             bounds: [2.0 * squared_lengths[0], 2.0 * mass_ratio * mass_ratio * squared_lengths[1]],
             round_off: 0.25 * f64::EPSILON * squared_lengths[0].min(squared_lengths[1]),
+            slow: LARGEST_REST * system.m2 / system.m1,
             multipliers: [[0.0; 4]; 2],
         }
     }
 
     /// What the multipliers `(μ, ν)` add to `−wₐ` and to `w_b`.
     #[inline(always)]
-    fn pull(&self, [mu, nu]: [f64; 2]) -> [[f64; 2]; 2] {
-        let along_a = times(mu, self.a);
-        [difference(along_a, times(nu, self.b)), difference(along_a, times(self.mass_ratio * nu, self.b))]
+    fn pull(&self, multipliers: [f64; 2]) -> [[f64; 2]; 2] {
+        pull_of([self.a, self.b], self.mass_ratio, multipliers)
+    }
+
+    /// Removes the velocities along the rods, and returns twice the kinetic energy that they had, in units of `m₁/h²`.
+    #[inline(always)]
+    fn without_rest(
+        &self,
+        &Ends { a, b, cosine, r }: &Ends,
+        wa: [f64; 2],
+        wb: [f64; 2],
+    ) -> ([f64; 2], [f64; 2], f64) {
+        let rates = [dot(a, wa), dot(b, wb)];
+        let n1 = (self.outer * rates[0] + cosine * rates[1]) * r;
+        let n2 = (self.squared_lengths[0] * rates[1] + cosine * rates[0]) * r;
+        let [pull_a, pull_b] = pull_of([a, b], self.mass_ratio, [n1, n2]);
+        (difference(wa, pull_a), sum(wb, pull_b), n1 * rates[0] + n2 * rates[1])
     }
 
     /// Residuals of the constraints and their slopes at the ends `a'`, `b'` of the rods.
@@ -119,6 +154,7 @@ impl HandWritten<4> for HandWrittenDoublePendulum {
     #[inline(always)]
     fn advance(&mut self) -> Option<u32> {
         let guess = self.multipliers.map(extrapolated);
+        let at_end = [0, 1].map(|i| expected_at_end(guess[i], self.multipliers[i][0]));
         let [pull_a, pull_b] = self.pull(guess);
         let wa = [self.wa[0] - pull_a[0], self.wa[1] - (self.fall + pull_a[1])];
         let wb = sum(self.wb, pull_b);
@@ -144,15 +180,18 @@ impl HandWritten<4> for HandWrittenDoublePendulum {
         let (wa, wb) = (difference(wa, pull_a), sum(wb, pull_b));
         let (a, b) = (sum(self.a, wa), sum(self.b, wb));
 
-        // The end of gravity's kick, and the impulses (n₁, n₂) that keep the velocities on the constraints.
-        let wa = [wa[0], wa[1] - self.fall];
-        let rates = [dot(a, wa), dot(b, wb)];
+        // The end of gravity's kick, and the impulses that keep the velocities on the constraints: those that are expected, and the rest.
+        let [pull_a, pull_b] = pull_of([a, b], self.mass_ratio, at_end);
+        let wa = [wa[0] - pull_a[0], wa[1] - (self.fall + pull_a[1])];
+        let wb = sum(wb, pull_b);
         let cosine = dot(a, b);
         let r = 1.0 / (self.both - cosine * cosine);
-        let along_a = times((self.outer * rates[0] + cosine * rates[1]) * r, a);
-        let n2 = (self.squared_lengths[0] * rates[1] + cosine * rates[0]) * r;
-        let wa = difference(wa, difference(along_a, times(n2, b)));
-        let wb = sum(wb, difference(along_a, times(self.mass_ratio * n2, b)));
+        let ends = Ends { a, b, cosine, r };
+        let (mut wa, mut wb, removed) = self.without_rest(&ends, wa, wb);
+        let is_slow = removed > self.slow * (self.mass_ratio * dot(wa, wa) + 2.0 * dot(wa, wb) + dot(wb, wb));
+        if is_slow {
+            (wa, wb, _) = self.without_rest(&ends, wa, wb);
+        }
         if !are_finite([a, b, wa, wb]) {
             return None;
         }

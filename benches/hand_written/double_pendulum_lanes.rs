@@ -6,7 +6,7 @@ use evi_core::ensemble::LaneMask;
 use evi_core::scalar::{InstructionSet, LANES, LaneOperation, Lanes, Scalar};
 use evi_examples::{DoublePendulum, Start};
 
-use super::MAX_CORRECTIONS;
+use super::{LARGEST_REST, MAX_CORRECTIONS};
 
 type Pair = [Lanes; 2];
 
@@ -33,8 +33,18 @@ pub struct HandWrittenLanes {
     bounds: Pair,
     /// A residual below this is round-off.
     round_off: Lanes,
+    /// `LARGEST_REST` for energies in units of `m₂/h²` beside removed ones in units of `m₁/h²`.
+    slow: Lanes,
     /// `(μ, ν)` of the last four steps, newest first.
     multipliers: [[Lanes; 4]; 2],
+}
+
+/// The rods at the end of a step, `a·b`, and `1/(β l₁² l₂² − (a·b)²)`.
+struct Ends {
+    a: Pair,
+    b: Pair,
+    cosine: Lanes,
+    r: Lanes,
 }
 
 /// Half the slopes of the constraints by the multipliers, inverted but for the factor.
@@ -59,6 +69,12 @@ fn dot<const FUSED: bool>(a: Pair, b: Pair) -> Lanes {
 fn extrapolated<const FUSED: bool>([newest, second, third, oldest]: [Lanes; 4]) -> Lanes {
     let old = fma::<FUSED>(Lanes::splat(6.0), second, oldest);
     fma::<FUSED>(Lanes::splat(4.0), newest + third, -old)
+}
+
+/// The multiplier of the kick at the end of a step, from those of this step and the one before.
+#[inline(always)]
+fn expected<const FUSED: bool>(multiplier: Lanes, previous: Lanes) -> Lanes {
+    fma::<FUSED>(multiplier - previous, Lanes::splat(1.0 / 3.0), multiplier)
 }
 
 #[inline(always)]
@@ -106,20 +122,38 @@ impl HandWrittenLanes {
                 of(&|system, _| 2.0 * square(beta(system) * system.l2)),
             ],
             round_off: of(&|system, _| 0.25 * f64::EPSILON * square(system.l1).min(square(system.l2))),
+            slow: of(&|system, _| LARGEST_REST * system.m2 / system.m1),
             multipliers: [[Lanes::ZERO; 4]; 2],
         }
     }
 
     /// What the multipliers `(μ, ν)` add to `−wₐ` and to `w_b`.
     #[inline(always)]
-    fn pull<const FUSED: bool>(&self, [mu, nu]: Pair) -> [Pair; 2] {
+    fn pull<const FUSED: bool>(&self, multipliers: Pair) -> [Pair; 2] {
+        self.pull_along::<FUSED>([self.a, self.b], multipliers)
+    }
+
+    /// What the multipliers `(μ, ν)` along the rods `a`, `b` add to `−wₐ` and to `w_b`.
+    #[inline(always)]
+    fn pull_along<const FUSED: bool>(&self, [a, b]: [Pair; 2], [mu, nu]: Pair) -> [Pair; 2] {
         let outer = self.mass_ratio * nu;
-        let along = |i: usize| mu * self.a[i];
-        let (x, y) = (along(0), along(1));
+        let along_a = [mu * a[0], mu * a[1]];
         [
-            [fma::<FUSED>(-nu, self.b[0], x), fma::<FUSED>(-nu, self.b[1], y)],
-            [fma::<FUSED>(-outer, self.b[0], x), fma::<FUSED>(-outer, self.b[1], y)],
+            [fma::<FUSED>(-nu, b[0], along_a[0]), fma::<FUSED>(-nu, b[1], along_a[1])],
+            [fma::<FUSED>(-outer, b[0], along_a[0]), fma::<FUSED>(-outer, b[1], along_a[1])],
         ]
+    }
+
+    /// Removes the velocities along the rods, and returns twice the kinetic energy that they had, in units of `m₁/h²`.
+    #[inline(always)]
+    fn without_rest<const FUSED: bool>(&self, ends: &Ends, wa: Pair, wb: Pair) -> (Pair, Pair, Lanes) {
+        let Ends { a, b, cosine, r } = *ends;
+        let rates = [dot::<FUSED>(a, wa), dot::<FUSED>(b, wb)];
+        let n1 = fma::<FUSED>(self.outer, rates[0], cosine * rates[1]) * r;
+        let n2 = fma::<FUSED>(self.squared_lengths[0], rates[1], cosine * rates[0]) * r;
+        let [pull_a, pull_b] = self.pull_along::<FUSED>([a, b], [n1, n2]);
+        let removed = fma::<FUSED>(n1, rates[0], n2 * rates[1]);
+        (difference(wa, pull_a), sum(wb, pull_b), removed)
     }
 
     /// Residuals of the constraints and their slopes at the ends `a'`, `b'` of the rods.
@@ -166,6 +200,10 @@ impl HandWrittenLanes {
     #[inline(always)]
     pub fn advance<const FUSED: bool>(&mut self) -> bool {
         let guess = [extrapolated::<FUSED>(self.multipliers[0]), extrapolated::<FUSED>(self.multipliers[1])];
+        let at_end = [
+            expected::<FUSED>(guess[0], self.multipliers[0][0]),
+            expected::<FUSED>(guess[1], self.multipliers[1][0]),
+        ];
         let [pull_a, pull_b] = self.pull::<FUSED>(guess);
         let wa = [self.wa[0] - pull_a[0], self.wa[1] - (self.fall + pull_a[1])];
         let wb = sum(self.wb, pull_b);
@@ -200,17 +238,25 @@ impl HandWrittenLanes {
         let (wa, wb) = (difference(wa, pull_a), sum(wb, pull_b));
         let (a, b) = (sum(self.a, wa), sum(self.b, wb));
 
-        // The end of gravity's kick, and the impulses (n₁, n₂) that keep the velocities on the constraints.
-        let wa = [wa[0], wa[1] - self.fall];
-        let rates = [dot::<FUSED>(a, wa), dot::<FUSED>(b, wb)];
+        // The end of gravity's kick, and the impulses that keep the velocities on the constraints: those that are expected, and the rest.
+        let [pull_a, pull_b] = self.pull_along::<FUSED>([a, b], at_end);
+        let wa = [wa[0] - pull_a[0], wa[1] - (self.fall + pull_a[1])];
+        let wb = sum(wb, pull_b);
         let cosine = dot::<FUSED>(a, b);
         let r = Lanes::splat(1.0) / fma::<FUSED>(-cosine, cosine, self.both);
-        let n1 = fma::<FUSED>(self.outer, rates[0], cosine * rates[1]) * r;
-        let n2 = fma::<FUSED>(self.squared_lengths[0], rates[1], cosine * rates[0]) * r;
-        let outer = self.mass_ratio * n2;
-        let along = [n1 * a[0], n1 * a[1]];
-        let wa = [fma::<FUSED>(n2, b[0], wa[0] - along[0]), fma::<FUSED>(n2, b[1], wa[1] - along[1])];
-        let wb = [fma::<FUSED>(-outer, b[0], wb[0] + along[0]), fma::<FUSED>(-outer, b[1], wb[1] + along[1])];
+        let ends = Ends { a, b, cosine, r };
+        let (mut wa, mut wb, removed) = self.without_rest::<FUSED>(&ends, wa, wb);
+        let energy = fma::<FUSED>(
+            self.mass_ratio,
+            dot::<FUSED>(wa, wa),
+            fma::<FUSED>(Lanes::splat(2.0), dot::<FUSED>(wa, wb), dot::<FUSED>(wb, wb)),
+        );
+        let slow = LaneMask::ALL.without(LaneMask::at_most(removed, self.slow * energy));
+        if slow.is_any() {
+            let (again_a, again_b, _) = self.without_rest::<FUSED>(&ends, wa, wb);
+            wa = [slow.select(again_a[0], wa[0]), slow.select(again_a[1], wa[1])];
+            wb = [slow.select(again_b[0], wb[0]), slow.select(again_b[1], wb[1])];
+        }
         let all = (a[0] + a[1]) + (b[0] + b[1]) + ((wa[0] + wa[1]) + (wb[0] + wb[1]));
         let finite = LaneMask::below(all * Lanes::ZERO, Lanes::splat(1.0));
         let taken = finite.without(failed);

@@ -1,7 +1,7 @@
 //! Steps as an expert would write them for one scene alone: the measure of what a generated step costs.
 //!
 //! In: a scene of the gallery, a start and a step size. Out: the midpoint step (for constraints, RATTLE) as a map from
-//! `(q, v)` to `(q, v)`, converged to round-off, with its convergence checked; nothing is generic, nothing allocates. Each
+//! `(q, v)` to `(q, v)`, converged to round-off of `φ` and, at turning points too, of `G v`, with its convergence checked; nothing is generic, nothing allocates. Each
 //! file uses what its scene permits and no compiler could be asked to know. What depends on the last steps are first guesses
 //! only.
 //!
@@ -33,6 +33,17 @@ pub trait HandWritten<const N: usize> {
 
 /// Corrections after which an iteration is given up.
 const MAX_CORRECTIONS: u32 = 30;
+
+/// A motion is slow where the velocities that are removed at the end of a step have more than this fraction of its energy: what rounds them is then not
+/// round-off of its velocities, and they are removed once more.
+const LARGEST_REST: f64 = 1.0 / 16384.0;
+
+/// The multiplier of the kick at the end of a step, from those of this step and the one before: averages over a step with the weights of its two
+/// kicks, they belong to a third and two thirds of it.
+#[inline(always)]
+fn expected_at_end(multiplier: f64, previous: f64) -> f64 {
+    multiplier + (multiplier - previous) * (1.0 / 3.0)
+}
 
 /// The value that a cubic through the last four, newest first, predicts.
 #[inline(always)]

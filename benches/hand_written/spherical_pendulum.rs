@@ -10,7 +10,10 @@
 
 use evi_examples::{SphericalPendulum, Start};
 
-use super::{HandWritten, MAX_CORRECTIONS, are_finite, difference, dot, extrapolated, sum, times};
+use super::{
+    HandWritten, LARGEST_REST, MAX_CORRECTIONS, are_finite, difference, dot, expected_at_end, extrapolated,
+    sum, times,
+};
 
 /// A run of the spherical pendulum.
 pub struct HandWrittenSphericalPendulum {
@@ -47,6 +50,14 @@ impl HandWrittenSphericalPendulum {
         }
     }
 
+    /// Removes the velocity along the rod at `q`, and returns its square.
+    #[inline(always)]
+    fn without_rest(&self, q: [f64; 3], w: [f64; 3]) -> ([f64; 3], f64) {
+        let rate = dot(q, w);
+        let along = self.inverse_squared_length * rate;
+        (difference(w, times(along, q)), along * rate)
+    }
+
     /// `δ` by Newton's iteration with a fresh slope for every correction, and the number of corrections.
     #[cold]
     fn solve_anew(&self, guess: [f64; 3]) -> Option<(f64, u32)> {
@@ -71,6 +82,7 @@ impl HandWritten<3> for HandWrittenSphericalPendulum {
     fn advance(&mut self) -> Option<u32> {
         let q = self.q;
         let mu = extrapolated(self.multipliers);
+        let at_end = expected_at_end(mu, self.multipliers[0]);
         let reciprocal = extrapolated(self.reciprocals);
         let mut w = self.w;
         w[2] -= self.fall;
@@ -93,9 +105,13 @@ impl HandWritten<3> for HandWrittenSphericalPendulum {
         }
         let w = difference(w, times(delta, q));
         let end = sum(q, w);
-        let mut w = w;
+        let mut w = difference(w, times(at_end, end));
         w[2] -= self.fall;
-        let w = difference(w, times(self.inverse_squared_length * dot(end, w), end));
+        let (mut w, removed) = self.without_rest(end, w);
+        let is_slow = removed > LARGEST_REST * dot(w, w);
+        if is_slow {
+            (w, _) = self.without_rest(end, w);
+        }
         if !are_finite([end, w]) {
             return None;
         }
