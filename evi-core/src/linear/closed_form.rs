@@ -6,6 +6,7 @@ use super::{Factorization, SingularMatrix};
 const SMALLEST_DETERMINANT: f64 = 8.0 * f64::EPSILON;
 
 /// The empty matrix.
+#[derive(Clone)]
 pub struct Inverse0;
 
 impl Factorization<[f64; 0], [[f64; 0]; 0]> for Inverse0 {
@@ -29,6 +30,7 @@ impl Factorization<[f64; 0], [[f64; 0]; 0]> for Inverse0 {
 }
 
 /// The reciprocal of a 1 × 1 matrix.
+#[derive(Clone)]
 pub struct Inverse1(f64);
 
 impl Factorization<[f64; 1], [[f64; 1]; 1]> for Inverse1 {
@@ -61,6 +63,7 @@ impl Factorization<[f64; 1], [[f64; 1]; 1]> for Inverse1 {
 
 /// A 2 × 2 matrix by its adjugate and its determinant: one division, where elimination waits for two, and none of the
 /// products waits for it.
+#[derive(Clone)]
 pub struct Inverse2 {
     matrix: [[f64; 2]; 2],
     reciprocal_determinant: f64,

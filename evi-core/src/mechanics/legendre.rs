@@ -28,6 +28,8 @@ pub(crate) struct ConstantLegendre<S: MechanicalSystem> {
     inverse_mass: CoordinateMatrix<S, AsMass>,
     /// `a = ∂L/∂v` at `v = 0`.
     momentum_at_rest: S::PerCoordinate<f64>,
+    /// Factors of `G M⁻¹ Gᵀ` where the constraints fix all of it.
+    steady_gram: Option<Result<S::GramFactors, SingularMatrix>>,
 }
 
 impl<S: MechanicalSystem> ConstantLegendre<S> {
@@ -41,7 +43,9 @@ impl<S: MechanicalSystem> ConstantLegendre<S> {
         let LagrangianGradient { momentum, .. } =
             S::lagrangian_gradient(&mechanics.constants, 0.0, &at_rest, &at_rest);
         let inverse_mass = CoordinateMatrix::inverse_of(&mechanics.constant_mass())?;
-        Ok(Self { inverse_mass, momentum_at_rest: momentum })
+        let steady_gram =
+            S::STRUCTURE.has_steady_gram().then(|| S::GramFactors::factor(&mechanics.steady_gram()));
+        Ok(Self { inverse_mass, momentum_at_rest: momentum, steady_gram })
     }
 
     /// `M⁻¹`.
@@ -90,8 +94,14 @@ impl<S: MechanicalSystem> ConstantLegendre<S> {
         jacobian: &S::PerJacobianEntry<f64>,
         tally: &mut impl Tally,
     ) -> Result<S::GramFactors, SingularMatrix> {
+        if const { S::STRUCTURE.has_steady_gram() }
+            && let Some(factors) = &self.steady_gram
+        {
+            tally.see_matrix(|| gram_conditioning::<S>(&mechanics.steady_gram()));
+            return factors.clone();
+        }
         let directions = mechanics.constraint_directions(jacobian, &self.inverse_mass);
-        let matrix = mechanics.gram_matrix::<AsMass>(jacobian, &directions);
+        let matrix = mechanics.mass_gram_matrix(jacobian, &directions);
         tally.see_matrix(|| gram_conditioning::<S>(&matrix));
         let gram = S::GramFactors::factor(&matrix)?;
         if gram.is_fallback() {
