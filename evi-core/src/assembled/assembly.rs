@@ -1,5 +1,7 @@
 //! A scene whose elements have been prepared: what it adds up, at one point.
 
+use std::ops::Range;
+
 use super::elements::{Elements, LanePoint, ObservedElements, Repeated, Term};
 use super::number::Number;
 use super::{AssembledSystem, AssemblyError, Family, FamilyVisitor, ObservedVisitor};
@@ -30,8 +32,8 @@ pub(super) struct Assembly {
 /// A family, and where its constraints and slopes stand among those of the scene.
 pub(super) struct PlacedFamily {
     pub(super) elements: Box<dyn Elements>,
-    pub(super) rows: std::ops::Range<usize>,
-    slopes: std::ops::Range<usize>,
+    pub(super) rows: Range<usize>,
+    slopes: Range<usize>,
 }
 
 /// A nonzero of the Jacobian of the constraints.
@@ -224,18 +226,20 @@ impl Assembly {
         }
     }
 
-    /// Overwrites `∂L/∂q + f` at a node per lane.
-    pub(super) fn lane_force(
+    /// Adds `∂L/∂q + f` of some elements of every family at a node per lane.
+    #[inline(always)]
+    pub(super) fn add_lane_force(
         &self,
         instructions: InstructionSet,
-        t: Lanes,
-        q: &[Lanes],
-        v: Option<&[Lanes]>,
+        elements: impl Fn(usize) -> Range<usize>,
+        (t, q, v): (Lanes, &[Lanes], Option<&[Lanes]>),
         force: &mut [Lanes],
     ) {
-        force.fill(Lanes::ZERO);
-        for family in self.families.iter().filter(|family| family.has_force()) {
-            family.elements.add_lane_force(instructions, t, q, v, force);
+        for (index, family) in self.families.iter().enumerate() {
+            let elements = elements(index);
+            if !elements.is_empty() && family.has_force() {
+                family.elements.add_lane_force(instructions, elements, t, q, v, force);
+            }
         }
     }
 
@@ -254,16 +258,26 @@ impl Assembly {
         }
     }
 
-    /// Overwrites `φ(t, q)` at a node per lane.
+    /// All elements of a family.
+    pub(super) fn all(&self) -> impl Fn(usize) -> Range<usize> {
+        |family| 0..self.families[family].elements.count()
+    }
+
+    /// Overwrites `φ(t, q)` of some elements of every family at a node per lane.
+    #[inline(always)]
     pub(super) fn lane_constraints(
         &self,
         instructions: InstructionSet,
-        t: Lanes,
-        q: &[Lanes],
+        elements: impl Fn(usize) -> Range<usize>,
+        (t, q): (Lanes, &[Lanes]),
         values: &mut [Lanes],
     ) {
-        for family in self.families.iter().filter(|family| !family.rows.is_empty()) {
-            family.elements.lane_constraints(instructions, t, q, &mut values[family.rows.clone()]);
+        for (index, family) in self.families.iter().enumerate() {
+            let elements = elements(index);
+            let rows = family.rows_of(elements.clone());
+            if !rows.is_empty() {
+                family.elements.lane_constraints(instructions, elements, t, q, &mut values[rows]);
+            }
         }
     }
 
@@ -283,17 +297,22 @@ impl Assembly {
         }
     }
 
-    /// Subtracts `Gᵀ x` from `force` at a node per lane.
+    /// Subtracts `Gᵀ x` of some elements of every family from `force` at a node per lane.
+    #[inline(always)]
     pub(super) fn subtract_lane_pull(
         &self,
         instructions: InstructionSet,
-        t: Lanes,
-        q: &[Lanes],
+        elements: impl Fn(usize) -> Range<usize>,
+        (t, q): (Lanes, &[Lanes]),
         x: &[Lanes],
         force: &mut [Lanes],
     ) {
-        for family in self.families.iter().filter(|family| !family.rows.is_empty()) {
-            family.elements.subtract_lane_pull(instructions, t, q, &x[family.rows.clone()], force);
+        for (index, family) in self.families.iter().enumerate() {
+            let elements = elements(index);
+            let rows = family.rows_of(elements.clone());
+            if !rows.is_empty() {
+                family.elements.subtract_lane_pull(instructions, elements, t, q, &x[rows], force);
+            }
         }
     }
 
@@ -315,6 +334,13 @@ impl Assembly {
 }
 
 impl PlacedFamily {
+    /// The constraints of some elements.
+    #[inline(always)]
+    pub(super) fn rows_of(&self, elements: Range<usize>) -> Range<usize> {
+        let per_element = self.elements.n_constraints();
+        self.rows.start + elements.start * per_element..self.rows.start + elements.end * per_element
+    }
+
     /// Whether some force may act on its elements.
     fn has_force(&self) -> bool {
         let structure = self.elements.structure();

@@ -9,6 +9,8 @@ mod repeated;
 pub(super) use observed::{ObservedElements, Term};
 pub(super) use repeated::Repeated;
 
+use std::ops::Range;
+
 use super::Point;
 use super::sparse::Symmetric;
 use crate::memory::Digest;
@@ -89,10 +91,11 @@ pub(super) trait Elements {
     /// Overwrites `γ = vᵀ φ_qq v + 2 φ_qt v + φ_tt` of this family.
     fn curvature(&self, at: Point<'_>, values: &mut [f64]);
 
-    /// [`add_force`](Self::add_force) at a node per lane.
+    /// [`add_force`](Self::add_force) of some elements, at a node per lane.
     fn add_lane_force(
         &self,
         instructions: InstructionSet,
+        elements: Range<usize>,
         t: Lanes,
         q: &[Lanes],
         v: Option<&[Lanes]>,
@@ -117,8 +120,15 @@ pub(super) trait Elements {
         matrix: &mut Symmetric<Lanes>,
     );
 
-    /// [`constraints`](Self::constraints) at a node per lane.
-    fn lane_constraints(&self, instructions: InstructionSet, t: Lanes, q: &[Lanes], values: &mut [Lanes]);
+    /// [`constraints`](Self::constraints) of some elements, at a node per lane.
+    fn lane_constraints(
+        &self,
+        instructions: InstructionSet,
+        elements: Range<usize>,
+        t: Lanes,
+        q: &[Lanes],
+        values: &mut [Lanes],
+    );
 
     /// [`constraint_derivatives`](Self::constraint_derivatives) at a node per lane, without those by time.
     fn lane_constraint_derivatives(
@@ -130,10 +140,11 @@ pub(super) trait Elements {
         slopes: &mut [Lanes],
     );
 
-    /// Subtracts `Gᵀ x` from `force` at a node per lane.
+    /// Subtracts `Gᵀ x` of some elements from `force` at a node per lane; `x` is theirs.
     fn subtract_lane_pull(
         &self,
         instructions: InstructionSet,
+        elements: Range<usize>,
         t: Lanes,
         q: &[Lanes],
         x: &[Lanes],

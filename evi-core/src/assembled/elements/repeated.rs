@@ -1,5 +1,7 @@
 //! A family of elements of one type.
 
+use std::ops::Range;
+
 use super::super::Point;
 use super::super::sparse::Symmetric;
 use super::loops::{self, AddForce, AddGradient, AddMass, Constraints, SubtractPull};
@@ -244,12 +246,14 @@ impl<E: MechanicalSystem> Elements for Repeated<E> {
     fn add_lane_force(
         &self,
         instructions: InstructionSet,
+        elements: Range<usize>,
         t: Lanes,
         q: &[Lanes],
         v: Option<&[Lanes]>,
         force: &mut [Lanes],
     ) {
-        instructions.run(AddForce { elements: &self.elements, at: (t, q, v), inputs: &self.inputs, force });
+        let elements = &self.elements[elements];
+        instructions.run(AddForce { elements, at: (t, q, v), inputs: &self.inputs, force });
     }
 
     fn add_lane_gradient(
@@ -272,8 +276,16 @@ impl<E: MechanicalSystem> Elements for Repeated<E> {
         instructions.run(AddMass { elements: &self.elements, at, places, matrix });
     }
 
-    fn lane_constraints(&self, instructions: InstructionSet, t: Lanes, q: &[Lanes], values: &mut [Lanes]) {
-        instructions.run(Constraints { elements: &self.elements, at: (t, q), values, slopes: None });
+    fn lane_constraints(
+        &self,
+        instructions: InstructionSet,
+        elements: Range<usize>,
+        t: Lanes,
+        q: &[Lanes],
+        values: &mut [Lanes],
+    ) {
+        let elements = &self.elements[elements];
+        instructions.run(Constraints { elements, at: (t, q), values, slopes: None });
     }
 
     fn lane_constraint_derivatives(
@@ -291,11 +303,12 @@ impl<E: MechanicalSystem> Elements for Repeated<E> {
     fn subtract_lane_pull(
         &self,
         instructions: InstructionSet,
+        elements: Range<usize>,
         t: Lanes,
         q: &[Lanes],
         x: &[Lanes],
         force: &mut [Lanes],
     ) {
-        instructions.run(SubtractPull { elements: &self.elements, at: (t, q), x, force });
+        instructions.run(SubtractPull { elements: &self.elements[elements], at: (t, q), x, force });
     }
 }
