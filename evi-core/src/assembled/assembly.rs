@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use super::elements::{Elements, LanePoint, ObservedElements, Repeated, Term};
+use super::elements::{Elements, LanePoint, ObservedElement, ObservedElements, Repeated, Term};
 use super::number::Number;
-use super::{AssembledSystem, AssemblyError, Family, FamilyVisitor, ObservedVisitor};
+use super::{AssembledSystem, AssemblyError, Family, FamilyVisitor, FrequencyVisitor, ObservedVisitor};
 use crate::memory::memory;
 use crate::scalar::{InstructionSet, Lanes, Scalar};
 use crate::system::Structure;
@@ -24,6 +24,8 @@ pub(super) struct Assembly {
     pub(super) families: Vec<PlacedFamily>,
     /// Terms of observed quantities, each with the quantity.
     observed: Vec<(usize, Box<dyn Term>)>,
+    /// The frequencies of curves that the scene gives, with their coordinates.
+    frequencies: Vec<(usize, f64)>,
     /// Constraint and coordinate of every slope.
     pub(super) slots: Vec<Slot>,
     pub(super) traits: Traits,
@@ -106,6 +108,17 @@ struct Preparation<'a, S> {
     system: &'a S,
     families: Vec<Box<dyn Elements>>,
     observed: Vec<(usize, Box<dyn Term>)>,
+    frequencies: Vec<(usize, f64)>,
+}
+
+impl<S> FrequencyVisitor<S> for Preparation<'_, S> {
+    fn frequency<F: Family<S>>(&mut self) {
+        for index in 0..F::count(self.system) {
+            let element = ObservedElement::new(&F::element(self.system, index));
+            let places = F::coordinates(self.system, index);
+            self.frequencies.extend(places.as_ref().iter().map(|&place| (place, element.at_rest())));
+        }
+    }
 }
 
 impl<S> ObservedVisitor<S> for Preparation<'_, S> {
@@ -129,10 +142,12 @@ impl Assembly {
     /// # Errors
     /// [`AssemblyError`] for elements that lie elsewhere, or whose parameters are no numbers.
     pub(super) fn new<S: AssembledSystem>(system: &S) -> Result<Self, AssemblyError> {
-        let mut preparation = Preparation { system, families: Vec::new(), observed: Vec::new() };
+        let (families, observed, frequencies) = (Vec::new(), Vec::new(), Vec::new());
+        let mut preparation = Preparation { system, families, observed, frequencies };
         system.visit_families(&mut preparation);
         system.visit_observed(&mut preparation);
-        let Preparation { families: found, observed, .. } = preparation;
+        system.visit_frequencies(&mut preparation);
+        let Preparation { families: found, observed, frequencies, .. } = preparation;
         let n_coordinates = system.n_coordinates();
         let (mut rows, mut families, mut slots) = (0, Vec::new(), Vec::new());
         let mut traits = Traits::OF_NOTHING;
@@ -158,7 +173,7 @@ impl Assembly {
             }
             families.push(PlacedFamily { elements, rows: first_row..rows, slopes: first_slope..slots.len() });
         }
-        Ok(Self { n_coordinates, n_constraints: rows, families, observed, slots, traits })
+        Ok(Self { n_coordinates, n_constraints: rows, families, observed, frequencies, slots, traits })
     }
 
     /// Sets what forces take from the caller.
@@ -172,6 +187,28 @@ impl Assembly {
         for (quantity, term) in &self.observed {
             quantities[*quantity] += term.sum(at, inputs);
         }
+    }
+
+    /// The frequency of the curve of every coordinate, 0 for those without one; none where the scene gives none.
+    pub(super) fn frequencies(&self) -> Option<Vec<f64>> {
+        let mut of_coordinates = vec![0.0; self.n_coordinates];
+        for &(place, frequency) in &self.frequencies {
+            of_coordinates[place] = frequency;
+        }
+        (!self.frequencies.is_empty()).then_some(of_coordinates)
+    }
+
+    /// Whether neither `L` nor a force or a constraint depends on a coordinate.
+    pub(super) fn free_coordinates(&self) -> Vec<bool> {
+        let mut are_free = vec![true; self.n_coordinates];
+        for PlacedFamily { elements, .. } in &self.families {
+            for local in (0..elements.n_coordinates()).filter(|&local| !elements.structure().is_free(local)) {
+                for element in 0..elements.count() {
+                    are_free[elements.place(element, local)] = false;
+                }
+            }
+        }
+        are_free
     }
 
     /// Energy `H = v · ∂L/∂v − L`.

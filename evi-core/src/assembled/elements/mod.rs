@@ -6,7 +6,7 @@ mod loops;
 mod observed;
 mod repeated;
 
-pub(super) use observed::{ObservedElements, Term};
+pub(super) use observed::{ObservedElement, ObservedElements, Term};
 pub(super) use repeated::Repeated;
 
 use std::ops::Range;
@@ -15,6 +15,7 @@ use super::Point;
 use super::sparse::Symmetric;
 use crate::memory::Digest;
 use crate::scalar::{InstructionSet, Lanes};
+use crate::scheme::NodeCoefficients;
 use crate::system::{Structure, SystemReport};
 
 /// A family whose kernels add to vectors of the whole scene.
@@ -63,7 +64,7 @@ pub(super) trait Elements {
     fn add_second_derivatives(
         &self,
         at: Point<'_>,
-        weights: &SecondWeights,
+        weights: &SecondWeights<'_>,
         places: &[u32],
         entries: &mut [f64],
     );
@@ -162,7 +163,7 @@ pub(super) struct LanePoint<'a> {
 
 /// What second derivatives are multiplied with.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct SecondWeights {
+pub(super) struct SecondWeights<'c> {
     /// `∂²L/∂v²`.
     pub(super) vv: f64,
     /// `∂²L/∂v∂q`, row of `v`.
@@ -175,6 +176,52 @@ pub(super) struct SecondWeights {
     pub(super) fq: f64,
     /// `∂f/∂v`.
     pub(super) fv: f64,
+    /// Where curves of a frequency are varied, with the end of a step in a column and with its start in a row: derivatives by `q` are multiplied with
+    /// `g₂` and `g₁`, those by `v` with `h g₂'` and `−h g₁'`.
+    pub(super) curves: Option<&'c [NodeCoefficients]>,
+}
+
+impl SecondWeights<'_> {
+    /// The weight of `∂²L/∂v²`, between coordinates of the scene; the others likewise.
+    #[inline]
+    fn vv(&self, row: usize, col: usize) -> f64 {
+        self.vv * self.curves.map_or(1.0, |of| -of[row].start_rate() * of[col].end_rate())
+    }
+
+    #[inline]
+    fn vq(&self, row: usize, col: usize) -> f64 {
+        self.vq * self.curves.map_or(1.0, |of| -of[row].start_rate() * of[col].end())
+    }
+
+    #[inline]
+    fn qv(&self, row: usize, col: usize) -> f64 {
+        self.qv * self.of_start_and_rate(row, col)
+    }
+
+    #[inline]
+    fn qq(&self, row: usize, col: usize) -> f64 {
+        self.qq * self.of_start_and_end(row, col)
+    }
+
+    #[inline]
+    fn fq(&self, row: usize, col: usize) -> f64 {
+        self.fq * self.of_start_and_end(row, col)
+    }
+
+    #[inline]
+    fn fv(&self, row: usize, col: usize) -> f64 {
+        self.fv * self.of_start_and_rate(row, col)
+    }
+
+    #[inline]
+    fn of_start_and_rate(&self, row: usize, col: usize) -> f64 {
+        self.curves.map_or(1.0, |of| of[row].start() * of[col].end_rate())
+    }
+
+    #[inline]
+    fn of_start_and_end(&self, row: usize, col: usize) -> f64 {
+        self.curves.map_or(1.0, |of| of[row].start() * of[col].end())
+    }
 }
 
 /// Calls `visit(row, col)` for every number that second derivatives of an element add to a matrix over coordinates.
