@@ -11,6 +11,12 @@ use crate::scheme::checked_step_size;
 
 /// A scheme that integrates assembled scenes: [`Evi`] on straight curves and on those of [frequencies](AssembledCurves), [`Galerkin`](crate::integrator::Galerkin) on polynomials, their symmetric
 /// compositions, and all of these rescued.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` takes no steps of scenes whose sums and families stay loops",
+    label = "no scheme of `AssembledSimulation`",
+    note = "`Evi` on straight curves, with `.frequency(..)` or `.scene_frequencies()`, `Galerkin` on polynomials, compositions of them, and these `.rescued()` do",
+    note = "compensated summation and Galerkin steps with a frequency are for scenes whose sizes are small numbers"
+)]
 pub trait AssembledScheme {
     /// Its one-step map.
     type Step: AssembledStep;
