@@ -2,7 +2,7 @@
 
 #[cfg(feature = "std")]
 pub use crate::assembled::{
-    AssembledReport, AssembledSystem, Family, FamilyReport, FamilyVisitor, ObservedVisitor,
+    AssembledReport, AssembledSystem, Family, FamilyReport, FamilyVisitor, FrequencyVisitor, ObservedVisitor,
 };
 pub use crate::generic::GenericSystem;
 pub use crate::linear::{DenseLu, Elimination, Guarded, Inverse0, Inverse1, Inverse2, reciprocal_pivot};

@@ -6,8 +6,9 @@ use std::error::Error;
 
 use clap::Parser;
 
-use evi_core::report::SystemReport;
-use evi_examples::{Scene, Visitor, visit_all};
+use evi_core::assembled::{Family, FamilyVisitor};
+use evi_core::system::MechanicalSystem;
+use evi_examples::{LoopScene, LoopVisitor, Scene, Visitor, visit_all, visit_loops};
 
 /// Equations, structure and generated code of a scene of the gallery.
 #[derive(Parser)]
@@ -33,24 +34,59 @@ const PATH_OF_NAMES: &str = "::evi_core::__private::";
 struct Entry {
     name: &'static str,
     summary: &'static str,
-    report: SystemReport,
-    source: Option<&'static str>,
+    report: String,
+    latex: String,
+    /// The generated code; of a scene of many bodies that of its elements.
+    sources: Vec<&'static str>,
 }
 
-/// The scenes of the gallery, in alphabetical order.
+/// The scenes of the gallery.
 #[derive(Default)]
 struct Entries(Vec<Entry>);
 
 impl Visitor for Entries {
     fn visit<S: Scene>(&mut self) {
-        self.0.push(Entry { name: S::NAME, summary: S::SUMMARY, report: S::REPORT, source: S::SOURCE });
+        self.0.push(Entry {
+            name: S::NAME,
+            summary: S::SUMMARY,
+            report: S::REPORT.to_string(),
+            latex: S::REPORT.latex().to_string(),
+            sources: S::SOURCE.into_iter().collect(),
+        });
+    }
+}
+
+impl LoopVisitor for Entries {
+    fn visit<S: LoopScene>(&mut self) {
+        let mut elements = Elements::default();
+        S::standard().0.visit_families(&mut elements);
+        self.0.push(Entry {
+            name: S::NAME,
+            summary: S::SUMMARY,
+            report: S::REPORT.to_string(),
+            latex: S::REPORT.latex().to_string(),
+            sources: elements.0,
+        });
+    }
+}
+
+/// The generated code of the elements of a scene, each once.
+#[derive(Default)]
+struct Elements(Vec<&'static str>);
+
+impl<S> FamilyVisitor<S> for Elements {
+    fn family<F: Family<S>>(&mut self) {
+        self.0.extend(F::Element::SOURCE.filter(|source| !self.0.contains(source)));
     }
 }
 
 impl Entry {
     /// The generated code, formatted, without the path that every name of evi-core has in it.
     fn code(&self) -> Result<String, Box<dyn Error>> {
-        let source = self.source.ok_or("the generated code is kept with the feature `source` of evi-core")?;
+        if self.sources.is_empty() {
+            return Err("the generated code is kept with the feature `source` of evi-core".into());
+        }
+        let source = &self.sources.concat();
         let formatted = prettyplease::unparse(&syn::parse_file(source)?);
         // Again, for lines that are shorter now.
         Ok(prettyplease::unparse(&syn::parse_file(&formatted.replace(PATH_OF_NAMES, ""))?))
@@ -61,7 +97,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let options = Options::parse();
     let mut entries = Entries::default();
     visit_all(&mut entries);
-    let Entries(entries) = entries;
+    visit_loops(&mut entries);
+    let Entries(mut entries) = entries;
+    entries.sort_by_key(|entry| entry.name);
     if options.list {
         for Entry { name, summary, .. } in &entries {
             println!("{name:<24}{summary}");
@@ -77,7 +115,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     if options.code {
         print!("{}", scene.code()?);
     } else if options.latex {
-        print!("{}", scene.report.latex());
+        print!("{}", scene.latex);
     } else {
         print!("{}", scene.report);
     }

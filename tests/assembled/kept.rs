@@ -2,6 +2,7 @@
 
 use evi_core::assembled::{AssembledScheme, AssembledSimulation};
 use evi_core::prelude::*;
+use evi_examples::{LoopScene, LoopVisitor, visit_loops};
 use evi_tests::largest_difference;
 use evi_tests::trusses::{Placed, Truss, net, ring, tree};
 
@@ -127,4 +128,27 @@ fn the_symplectic_form_is_kept() {
     println!("of {size}: {difference:e}");
     // Round-off over the step of the difference quotients: 4.6e-12 measured.
     assert!(size > 0.1 && difference < 1e-11, "{difference:e} of {size}");
+}
+
+/// Takes steps of every scene of many bodies of the gallery.
+struct Steps;
+
+impl LoopVisitor for Steps {
+    fn visit<S: LoopScene>(&mut self) {
+        let (system, q) = S::standard();
+        let rest = vec![0.0; q.len()];
+        let simulation = AssembledSimulation::new(system, Evi::midpoint(2e-4));
+        let mut run = simulation.start(q.clone(), rest).expect("a start");
+        let energy = run.energy();
+        run.advance_to(0.02).expect("every step");
+        let (moved, gained) = (largest_difference(run.state().q(), &q), run.energy() - energy);
+        println!("{}: moved {moved:e}, energy gained {gained:e} of {energy:e}", S::NAME);
+        assert!(moved > 1e-3 && run.constraint_error() < 1e-15);
+        assert!(gained.abs() < 1e-5, "{gained:e}");
+    }
+}
+
+#[test]
+fn scenes_of_the_gallery_take_their_steps() {
+    visit_loops(&mut Steps);
 }

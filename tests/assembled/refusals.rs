@@ -57,6 +57,8 @@ fn starts_that_are_none_are_refused_by_name() {
     assert!(
         matches!(error, AssemblyError::InconsistentVelocity { constraint, .. } if constraint == "hanger[0]")
     );
+    let curved = AssembledSimulation::new(truss.clone(), Evi::midpoint(0.01).scene_frequencies());
+    assert_eq!(curved.start(q.clone(), rest.clone()).err(), Some(AssemblyError::NoFrequencies));
     let mut twice = truss;
     twice.rods.push(twice.rods[1]);
     let error = refused(twice, q, rest);

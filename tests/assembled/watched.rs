@@ -53,6 +53,8 @@ fn runs_that_are_resumed_go_on_to_the_last_bit() {
     check(truss.clone(), (&q, &rest), Evi::midpoint(0.01).composed(Composition::suzuki_4()));
     check(truss.clone(), (&q, &rest), Evi::midpoint(0.01).rescued::<3>());
     check(truss, (&q, &rest), Galerkin::<8>::new(0.02));
+    let (truss, rest, q) = at_rest(chain(500));
+    check(truss, (&q, &rest), Galerkin::<4>::new(0.002));
     let (truss, rest, q) = at_rest(net(3));
     check(truss.clone(), (&q, &rest), Evi::midpoint(0.01));
     check(truss, (&q, &rest), Evi::trapezoid(0.01));

@@ -3,6 +3,7 @@
 
 mod bodies;
 mod dense;
+mod frequencies;
 mod loops;
 mod unrolled;
 mod watched;

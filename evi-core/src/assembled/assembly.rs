@@ -1,8 +1,10 @@
 //! A scene whose elements have been prepared: what it adds up, at one point.
 
-use super::elements::{Elements, LanePoint, ObservedElements, Repeated, Term};
+use std::ops::Range;
+
+use super::elements::{Elements, LanePoint, ObservedElement, ObservedElements, Repeated, Term};
 use super::number::Number;
-use super::{AssembledSystem, AssemblyError, Family, FamilyVisitor, ObservedVisitor};
+use super::{AssembledSystem, AssemblyError, Family, FamilyVisitor, FrequencyVisitor, ObservedVisitor};
 use crate::memory::memory;
 use crate::scalar::{InstructionSet, Lanes, Scalar};
 use crate::system::Structure;
@@ -22,6 +24,8 @@ pub(super) struct Assembly {
     pub(super) families: Vec<PlacedFamily>,
     /// Terms of observed quantities, each with the quantity.
     observed: Vec<(usize, Box<dyn Term>)>,
+    /// The frequencies of curves that the scene gives, with their coordinates.
+    frequencies: Vec<(usize, f64)>,
     /// Constraint and coordinate of every slope.
     pub(super) slots: Vec<Slot>,
     pub(super) traits: Traits,
@@ -30,8 +34,8 @@ pub(super) struct Assembly {
 /// A family, and where its constraints and slopes stand among those of the scene.
 pub(super) struct PlacedFamily {
     pub(super) elements: Box<dyn Elements>,
-    pub(super) rows: std::ops::Range<usize>,
-    slopes: std::ops::Range<usize>,
+    pub(super) rows: Range<usize>,
+    slopes: Range<usize>,
 }
 
 /// A nonzero of the Jacobian of the constraints.
@@ -104,6 +108,17 @@ struct Preparation<'a, S> {
     system: &'a S,
     families: Vec<Box<dyn Elements>>,
     observed: Vec<(usize, Box<dyn Term>)>,
+    frequencies: Vec<(usize, f64)>,
+}
+
+impl<S> FrequencyVisitor<S> for Preparation<'_, S> {
+    fn frequency<F: Family<S>>(&mut self) {
+        for index in 0..F::count(self.system) {
+            let element = ObservedElement::new(&F::element(self.system, index));
+            let places = F::coordinates(self.system, index);
+            self.frequencies.extend(places.as_ref().iter().map(|&place| (place, element.at_rest())));
+        }
+    }
 }
 
 impl<S> ObservedVisitor<S> for Preparation<'_, S> {
@@ -127,10 +142,12 @@ impl Assembly {
     /// # Errors
     /// [`AssemblyError`] for elements that lie elsewhere, or whose parameters are no numbers.
     pub(super) fn new<S: AssembledSystem>(system: &S) -> Result<Self, AssemblyError> {
-        let mut preparation = Preparation { system, families: Vec::new(), observed: Vec::new() };
+        let (families, observed, frequencies) = (Vec::new(), Vec::new(), Vec::new());
+        let mut preparation = Preparation { system, families, observed, frequencies };
         system.visit_families(&mut preparation);
         system.visit_observed(&mut preparation);
-        let Preparation { families: found, observed, .. } = preparation;
+        system.visit_frequencies(&mut preparation);
+        let Preparation { families: found, observed, frequencies, .. } = preparation;
         let n_coordinates = system.n_coordinates();
         let (mut rows, mut families, mut slots) = (0, Vec::new(), Vec::new());
         let mut traits = Traits::OF_NOTHING;
@@ -156,7 +173,7 @@ impl Assembly {
             }
             families.push(PlacedFamily { elements, rows: first_row..rows, slopes: first_slope..slots.len() });
         }
-        Ok(Self { n_coordinates, n_constraints: rows, families, observed, slots, traits })
+        Ok(Self { n_coordinates, n_constraints: rows, families, observed, frequencies, slots, traits })
     }
 
     /// Sets what forces take from the caller.
@@ -170,6 +187,28 @@ impl Assembly {
         for (quantity, term) in &self.observed {
             quantities[*quantity] += term.sum(at, inputs);
         }
+    }
+
+    /// The frequency of the curve of every coordinate, 0 for those without one; none where the scene gives none.
+    pub(super) fn frequencies(&self) -> Option<Vec<f64>> {
+        let mut of_coordinates = vec![0.0; self.n_coordinates];
+        for &(place, frequency) in &self.frequencies {
+            of_coordinates[place] = frequency;
+        }
+        (!self.frequencies.is_empty()).then_some(of_coordinates)
+    }
+
+    /// Whether neither `L` nor a force or a constraint depends on a coordinate.
+    pub(super) fn free_coordinates(&self) -> Vec<bool> {
+        let mut are_free = vec![true; self.n_coordinates];
+        for PlacedFamily { elements, .. } in &self.families {
+            for local in (0..elements.n_coordinates()).filter(|&local| !elements.structure().is_free(local)) {
+                for element in 0..elements.count() {
+                    are_free[elements.place(element, local)] = false;
+                }
+            }
+        }
+        are_free
     }
 
     /// Energy `H = v · ∂L/∂v − L`.
@@ -224,18 +263,20 @@ impl Assembly {
         }
     }
 
-    /// Overwrites `∂L/∂q + f` at a node per lane.
-    pub(super) fn lane_force(
+    /// Adds `∂L/∂q + f` of some elements of every family at a node per lane.
+    #[inline(always)]
+    pub(super) fn add_lane_force(
         &self,
         instructions: InstructionSet,
-        t: Lanes,
-        q: &[Lanes],
-        v: Option<&[Lanes]>,
+        elements: impl Fn(usize) -> Range<usize>,
+        (t, q, v): (Lanes, &[Lanes], Option<&[Lanes]>),
         force: &mut [Lanes],
     ) {
-        force.fill(Lanes::ZERO);
-        for family in self.families.iter().filter(|family| family.has_force()) {
-            family.elements.add_lane_force(instructions, t, q, v, force);
+        for (index, family) in self.families.iter().enumerate() {
+            let elements = elements(index);
+            if !elements.is_empty() && family.has_force() {
+                family.elements.add_lane_force(instructions, elements, t, q, v, force);
+            }
         }
     }
 
@@ -254,16 +295,26 @@ impl Assembly {
         }
     }
 
-    /// Overwrites `φ(t, q)` at a node per lane.
+    /// All elements of a family.
+    pub(super) fn all(&self) -> impl Fn(usize) -> Range<usize> {
+        |family| 0..self.families[family].elements.count()
+    }
+
+    /// Overwrites `φ(t, q)` of some elements of every family at a node per lane.
+    #[inline(always)]
     pub(super) fn lane_constraints(
         &self,
         instructions: InstructionSet,
-        t: Lanes,
-        q: &[Lanes],
+        elements: impl Fn(usize) -> Range<usize>,
+        (t, q): (Lanes, &[Lanes]),
         values: &mut [Lanes],
     ) {
-        for family in self.families.iter().filter(|family| !family.rows.is_empty()) {
-            family.elements.lane_constraints(instructions, t, q, &mut values[family.rows.clone()]);
+        for (index, family) in self.families.iter().enumerate() {
+            let elements = elements(index);
+            let rows = family.rows_of(elements.clone());
+            if !rows.is_empty() {
+                family.elements.lane_constraints(instructions, elements, t, q, &mut values[rows]);
+            }
         }
     }
 
@@ -283,17 +334,22 @@ impl Assembly {
         }
     }
 
-    /// Subtracts `Gᵀ x` from `force` at a node per lane.
+    /// Subtracts `Gᵀ x` of some elements of every family from `force` at a node per lane.
+    #[inline(always)]
     pub(super) fn subtract_lane_pull(
         &self,
         instructions: InstructionSet,
-        t: Lanes,
-        q: &[Lanes],
+        elements: impl Fn(usize) -> Range<usize>,
+        (t, q): (Lanes, &[Lanes]),
         x: &[Lanes],
         force: &mut [Lanes],
     ) {
-        for family in self.families.iter().filter(|family| !family.rows.is_empty()) {
-            family.elements.subtract_lane_pull(instructions, t, q, &x[family.rows.clone()], force);
+        for (index, family) in self.families.iter().enumerate() {
+            let elements = elements(index);
+            let rows = family.rows_of(elements.clone());
+            if !rows.is_empty() {
+                family.elements.subtract_lane_pull(instructions, elements, t, q, &x[rows], force);
+            }
         }
     }
 
@@ -315,6 +371,13 @@ impl Assembly {
 }
 
 impl PlacedFamily {
+    /// The constraints of some elements.
+    #[inline(always)]
+    pub(super) fn rows_of(&self, elements: Range<usize>) -> Range<usize> {
+        let per_element = self.elements.n_constraints();
+        self.rows.start + elements.start * per_element..self.rows.start + elements.end * per_element
+    }
+
     /// Whether some force may act on its elements.
     fn has_force(&self) -> bool {
         let structure = self.elements.structure();

@@ -12,6 +12,25 @@ pub enum AssemblyError {
     /// The scheme defines no step for the scene.
     #[error(transparent)]
     Scheme(#[from] SchemeError),
+    /// The scheme takes the frequencies of a scene that gives none.
+    #[error(
+        "the scene gives no frequencies for the curves of `.scene_frequencies()`: give one in the attribute, `frequency(coordinate: expression)`, or in \
+         the scheme, `.frequency(..)`"
+    )]
+    NoFrequencies,
+    /// A coordinate that nothing holds has a frequency.
+    #[error(
+        "nothing in the scene holds coordinate {coordinate}: on curves of the frequency {frequency:?} and these nodes its motion would grow at the rate \
+         {growth_rate:e} per unit of time. Give it a straight line, or allow this by `.allow_soft_modes()`"
+    )]
+    SoftCoordinate {
+        /// The coordinate, counted from 0.
+        coordinate: usize,
+        /// Its frequency.
+        frequency: f64,
+        /// The rate at which a motion along it would grow.
+        growth_rate: f64,
+    },
     /// A coordinate of an element lies where the scene has none.
     #[error(
         "coordinate {coordinate} of element {element} of family {family} lies at {place}, the scene has {n_coordinates} coordinates"

@@ -6,14 +6,21 @@
 //! Σ wⱼ (pⱼ − h (1 − cⱼ) Fⱼ) − p₀ + G₀ᵀ ℓ = 0        φ(t₁, q₀ + d) = 0        p⁻ = p₀ + h Σ wⱼ Fⱼ − G₀ᵀ ℓ
 //! ```
 //!
+//! and on curves of a frequency, `xⱼ = g₁ q₀ + g₂ q₁` with the coefficients of [`NodeCoefficients`](crate::scheme::NodeCoefficients),
+//!
+//! ```text
+//! Σ wⱼ (−h g₁' pⱼ − h g₁ Fⱼ) − p₀ + G₀ᵀ ℓ = 0        p⁻ = p₀ + Σ wⱼ (h (g₁ + g₂) Fⱼ + h (g₁' + g₂') pⱼ) − G₀ᵀ ℓ
+//! ```
+//!
 //! with `pⱼ = ∂L/∂v` and `Fⱼ = ∂L/∂q + f` at the nodes (Marsden & West, Acta Numerica 10 (2001), sec. 3.5); the momentum at the end is no difference of
 //! large ones.
 
 use super::assembly::{Assembly, Point, subtract_pull};
+use super::curves::Curves;
 use super::elements::SecondWeights;
 use super::history::History;
 use super::kicked::add_scaled;
-use super::nodes::Nodes;
+use super::nodes::{Node, Nodes};
 use super::saddle::Saddle;
 use super::scene::{PreparedScene, Space};
 use super::{AssembledState, failure};
@@ -22,6 +29,7 @@ use crate::linear::{SingularMatrix, largest_magnitude};
 use crate::mechanics::relative;
 use crate::memory::memory;
 use crate::newton::Progress;
+use crate::scheme::NodeCoefficients;
 
 /// The matrix is made anew for a correction that is not below this share of the one before.
 const STALE: f64 = 1e-3;
@@ -30,13 +38,15 @@ const STALE: f64 = 1e-3;
 pub(super) struct ImplicitStep {
     h: f64,
     nodes: Nodes,
+    /// Where they are not straight.
+    curves: Option<Curves>,
     /// The rests `d − h v₀`.
     sags: History,
 }
 
 impl ImplicitStep {
-    pub(super) fn new(scene: &PreparedScene, nodes: &Nodes, h: f64) -> Self {
-        Self { h, nodes: nodes.clone(), sags: History::none(scene.assembly.n_coordinates) }
+    pub(super) fn new(scene: &PreparedScene, nodes: &Nodes, curves: Option<Curves>, h: f64) -> Self {
+        Self { h, nodes: nodes.clone(), curves, sags: History::none(scene.assembly.n_coordinates) }
     }
 
     /// Drops the past.
@@ -153,10 +163,16 @@ impl ImplicitStep {
         pull.copy_from_slice(&state.p);
         subtract_pull::<f64, false>(&assembly.slots, &at_start.slopes, impulse, pull);
         unknowns[..n].iter_mut().zip(pull.iter()).for_each(|(residual, p)| *residual = -p);
-        self.for_each_node(assembly, space, state, |space, weight, time| {
+        self.for_each_node(assembly, space, state, |space, Node { time, weight }, curves| {
             let Space { unknowns, force, momentum, .. } = space;
-            add_scaled(&mut unknowns[..n], weight, momentum);
-            add_scaled(&mut unknowns[..n], -weight * self.h * (1.0 - time), force);
+            let Some(curves) = curves else {
+                add_scaled(&mut unknowns[..n], weight, momentum);
+                add_scaled(&mut unknowns[..n], -weight * self.h * (1.0 - time), force);
+                return;
+            };
+            for (i, of) in curves.iter().enumerate() {
+                unknowns[i] -= weight * (of.start_rate() * momentum[i] + self.h * of.start() * force[i]);
+            }
         });
     }
 
@@ -170,17 +186,21 @@ impl ImplicitStep {
     ) {
         let h = self.h;
         saddle.clear();
-        for node in self.nodes.iter() {
-            let (c, w) = (node.time, node.weight);
+        for (index, &node) in self.nodes.iter().enumerate() {
+            let Node { time: c, weight: w } = node;
+            let curves = self.curves.as_ref().map(|curves| curves.at(index));
+            // What curves multiply for themselves.
+            let (before, behind) = if curves.is_some() { (1.0, 1.0) } else { (1.0 - c, c) };
             let weights = SecondWeights {
                 vv: w / h,
-                vq: w * c,
-                qv: -w * (1.0 - c),
-                qq: -w * h * c * (1.0 - c),
-                fq: -w * h * c * (1.0 - c),
-                fv: -w * (1.0 - c),
+                vq: w * behind,
+                qv: -w * before,
+                qq: -w * h * behind * before,
+                fq: -w * h * behind * before,
+                fv: -w * before,
+                curves,
             };
-            place(space, state, c, h);
+            place(space, state, (c, curves), h);
             let at = Point { t: state.t + c * h, q: &space.pull, v: &space.v };
             saddle.add_second_derivatives(assembly, at, &weights);
         }
@@ -193,38 +213,57 @@ impl ImplicitStep {
             *q = start + moved;
         }
         space.p.copy_from_slice(&state.p);
-        self.for_each_node(assembly, space, state, |space, weight, _| {
-            add_scaled(&mut space.p, self.h * weight, &space.force);
+        self.for_each_node(assembly, space, state, |space, Node { weight, .. }, curves| {
+            let Space { p, force, momentum, .. } = space;
+            let Some(curves) = curves else {
+                add_scaled(p, self.h * weight, force);
+                return;
+            };
+            for (i, of) in curves.iter().enumerate() {
+                p[i] += weight * (self.h * of.even * force[i] + of.even_rate * momentum[i]);
+            }
         });
         subtract_pull::<f64, false>(&assembly.slots, &space.at_start.slopes, &space.impulse, &mut space.p);
     }
 
-    /// Calls `visit(space, w, c)` at every node with the gradient there in `space.force` and `space.momentum`.
+    /// Calls `visit(space, node, curves)` at every node with the gradient there in `space.force` and `space.momentum`.
     fn for_each_node(
         &self,
         assembly: &Assembly,
         space: &mut Space,
         state: &AssembledState,
-        mut visit: impl FnMut(&mut Space, f64, f64),
+        mut visit: impl FnMut(&mut Space, Node, Option<&[NodeCoefficients]>),
     ) {
-        for node in self.nodes.iter() {
-            place(space, state, node.time, self.h);
+        for (index, &node) in self.nodes.iter().enumerate() {
+            let curves = self.curves.as_ref().map(|curves| curves.at(index));
+            place(space, state, (node.time, curves), self.h);
             let at = Point { t: state.t + node.time * self.h, q: &space.pull, v: &space.v };
             assembly.gradient(at, &mut space.force, &mut space.momentum);
-            visit(space, node.weight, node.time);
+            visit(space, node, curves);
         }
     }
 }
 
-memory!([] ImplicitStep, |words| Self { h, nodes, sags } => {
+memory!([] ImplicitStep, |words| Self { h, nodes, curves, sags } => {
     words.fixed(*h);
     nodes.for_each_number(|number| words.fixed(number));
+    if let Some(curves) = curves {
+        curves.for_each_number(|number| words.fixed(number));
+    }
     words.part(sags);
 });
 
 /// Overwrites `space.pull` and `space.v` with the position and velocity at `c` on the way `space.moved`.
-fn place(space: &mut Space, state: &AssembledState, c: f64, h: f64) {
+fn place(space: &mut Space, state: &AssembledState, (c, curves): (f64, Option<&[NodeCoefficients]>), h: f64) {
     let inverse_h = 1.0 / h;
+    if let Some(curves) = curves {
+        for (i, of) in curves.iter().enumerate() {
+            let (moved, middle) = (space.moved[i], state.q[i] + 0.5 * space.moved[i]);
+            space.pull[i] = of.even * middle + of.odd * moved;
+            space.v[i] = inverse_h * (of.even_rate * middle + of.odd_rate * moved);
+        }
+        return;
+    }
     for (i, moved) in space.moved.iter().enumerate() {
         space.pull[i] = state.q[i] + c * moved;
         space.v[i] = inverse_h * moved;

@@ -70,6 +70,7 @@
 
 mod assembly;
 mod checkpoint;
+mod curves;
 mod elements;
 mod error;
 mod failure;
@@ -96,6 +97,7 @@ mod system;
 mod writer;
 
 use assembly::Point;
+pub use curves::AssembledCurves;
 pub use error::AssemblyError;
 pub use galerkin::AssembledGalerkin;
 pub use report::{AssembledReport, FamilyReport, RunReport};
@@ -106,7 +108,7 @@ pub use scheme::{AssembledComposed, AssembledEvi, AssembledScheme, AssembledStep
 pub use sparse::Effort;
 pub use start::AssembledSimulation;
 pub use state::AssembledState;
-pub use system::{AssembledSystem, Family, FamilyVisitor, ObservedVisitor};
+pub use system::{AssembledSystem, Family, FamilyVisitor, FrequencyVisitor, ObservedVisitor};
 #[cfg(feature = "parquet")]
 pub use writer::ParquetStates;
 pub use writer::StateWriter;

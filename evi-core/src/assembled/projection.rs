@@ -16,7 +16,8 @@ use crate::newton;
 const LARGEST_REST: f64 = 1.0 / 16384.0;
 
 /// Of a saddle-point matrix with the mass.
-pub(super) const MASS: SecondWeights = SecondWeights { vv: 1.0, vq: 0.0, qv: 0.0, qq: 0.0, fq: 0.0, fv: 0.0 };
+pub(super) const MASS: SecondWeights<'static> =
+    SecondWeights { vv: 1.0, vq: 0.0, qv: 0.0, qq: 0.0, fq: 0.0, fv: 0.0, curves: None };
 
 impl PreparedScene {
     /// Moves `space.q` onto the constraints, from a point that is beside them by little, across them in the metric of the mass; overwrites `space.at_end`

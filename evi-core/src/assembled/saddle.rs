@@ -116,7 +116,7 @@ impl Saddle {
         &mut self,
         assembly: &Assembly,
         at: Point<'_>,
-        weights: &SecondWeights,
+        weights: &SecondWeights<'_>,
     ) {
         let entries = self.matrix.entries_mut();
         for (family, places) in assembly.families.iter().zip(&self.second_derivatives) {

@@ -1,15 +1,22 @@
 //! Schemes, prepared for an assembled scene.
 
+use super::curves::Curves;
 use super::implicit::ImplicitStep;
 use super::kicked::KickedStep;
 use super::nodes::Nodes;
-use super::{AssembledState, AssemblyError, PreparedScene};
+use super::{AssembledCurves, AssembledState, AssemblyError, PreparedScene};
 use crate::integrator::{Composed, Evi, StepError, Symmetric, Tally};
 use crate::memory::{Memory, memory};
 use crate::scheme::checked_step_size;
 
-/// A scheme that integrates assembled scenes: [`Evi`] on straight curves, [`Galerkin`](crate::integrator::Galerkin) on polynomials, their symmetric
+/// A scheme that integrates assembled scenes: [`Evi`] on straight curves and on those of [frequencies](AssembledCurves), [`Galerkin`](crate::integrator::Galerkin) on polynomials, their symmetric
 /// compositions, and all of these rescued.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` takes no steps of scenes whose sums and families stay loops",
+    label = "no scheme of `AssembledSimulation`",
+    note = "`Evi` on straight curves, with `.frequency(..)` or `.scene_frequencies()`, `Galerkin` on polynomials, compositions of them, and these `.rescued()` do",
+    note = "compensated summation and Galerkin steps with a frequency are for scenes whose sizes are small numbers"
+)]
 pub trait AssembledScheme {
     /// Its one-step map.
     type Step: AssembledStep;
@@ -55,17 +62,21 @@ enum Kind {
     Implicit(ImplicitStep),
 }
 
-impl<const K: usize> AssembledScheme for Evi<K> {
+impl<const K: usize, F: AssembledCurves + Clone> AssembledScheme for Evi<K, F> {
     type Step = AssembledEvi;
 
     fn prepare(&self, scene: &mut PreparedScene) -> Result<AssembledEvi, AssemblyError> {
         let h = checked_step_size(self.step_size())?;
         let nodes = Nodes::of(self.quadrature());
-        let kind = match KickedStep::new(scene, &nodes, h) {
+        let frequencies = self.interpolant().frequencies(scene)?;
+        let curves = Curves::new(frequencies, (self.quadrature(), h), scene, self.allows_soft_modes())?;
+        // Ends of curved ways depend on forces all along them.
+        let kicked = if curves.is_none() { KickedStep::new(scene, &nodes, h) } else { None };
+        let kind = match kicked {
             Some(kicked) => Kind::Kicked(kicked),
             None => {
                 scene.prepare_saddle()?;
-                Kind::Implicit(ImplicitStep::new(scene, &nodes, h))
+                Kind::Implicit(ImplicitStep::new(scene, &nodes, curves, h))
             }
         };
         Ok(AssembledEvi { h, kind })

@@ -50,6 +50,12 @@ pub trait AssembledSystem: Sized {
     fn visit_observed<V: ObservedVisitor<Self>>(&self, visitor: &mut V) {
         let _ = visitor;
     }
+
+    /// Shows families whose only observed quantity is the frequency of the curves of their coordinates, a function of parameters; coordinates of none
+    /// take straight lines.
+    fn visit_frequencies<V: FrequencyVisitor<Self>>(&self, visitor: &mut V) {
+        let _ = visitor;
+    }
 }
 
 /// A repeated element of a scene `S`.
@@ -75,6 +81,12 @@ pub trait Family<S> {
 pub trait FamilyVisitor<S> {
     /// Sees the next one.
     fn family<F: Family<S>>(&mut self);
+}
+
+/// Sees the families that give frequencies.
+pub trait FrequencyVisitor<S> {
+    /// Sees the next one.
+    fn frequency<F: Family<S>>(&mut self);
 }
 
 /// Sees the terms of the observed quantities of a scene.

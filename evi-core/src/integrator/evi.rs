@@ -109,6 +109,18 @@ impl<const K: usize, F> Evi<K, F> {
     pub(crate) const fn quadrature(&self) -> &Quadrature<K> {
         &self.quadrature
     }
+
+    /// Its curves.
+    #[cfg(feature = "std")]
+    pub(crate) const fn interpolant(&self) -> &F {
+        &self.interpolant
+    }
+
+    /// Whether coordinates that nothing holds may have a frequency.
+    #[cfg(feature = "std")]
+    pub(crate) const fn allows_soft_modes(&self) -> bool {
+        self.allows_soft_modes
+    }
 }
 
 impl Evi<2> {

@@ -2,7 +2,8 @@
 
 use core::fmt::{self, Display, Formatter};
 
-use super::system::write_equations;
+use super::Latex;
+use super::system::{write_equations, write_kernels};
 use super::words::{LISTED_NAMES, List, write_structure};
 use crate::assembled::{AssembledReport, FamilyReport, RunReport};
 use crate::system::SystemReport;
@@ -32,8 +33,14 @@ impl Display for AssembledReport {
 /// The structure of an element, and what its kernels take.
 fn write_element(element: &SystemReport, f: &mut Formatter<'_>) -> fmt::Result {
     write_structure(element, f)?;
-    let statements: usize = element.kernels.iter().map(|kernel| kernel.statements).sum();
-    writeln!(f, "  code         {} kernels of {statements} statements in all", element.kernels.len())
+    write_kernels(element.kernels, f)
+}
+
+impl AssembledReport {
+    /// The equations as a LaTeX environment `aligned`, to stand in math mode.
+    pub const fn latex(&self) -> Latex<'_> {
+        Latex(self.equations)
+    }
 }
 
 impl Display for RunReport {

@@ -29,10 +29,8 @@ impl Display for SystemReport {
         write_matrix(self, f)?;
         write_unknowns(self, f)?;
 
-        writeln!(f, "\nOperations per call      + −     ×     ÷  f(x)   temporaries  statements")?;
-        for kernel in self.kernels.iter().filter(|kernel| kernel.statements + kernel.operations.total() > 0) {
-            write_kernel(kernel, f)?;
-        }
+        writeln!(f)?;
+        write_kernels(self.kernels, f)?;
 
         let mut left_out = self.left_out().peekable();
         if left_out.peek().is_some() {
@@ -67,6 +65,16 @@ fn write_unknowns(report: &SystemReport, f: &mut Formatter<'_>) -> fmt::Result {
         (false, 0) => writeln!(f, "; none once the positions are eliminated, for L is quadratic"),
         (false, _) => writeln!(f, "; {rest} once the positions are eliminated, for L is quadratic"),
     }
+}
+
+/// Writes what every kernel takes.
+pub(super) fn write_kernels(kernels: &[KernelReport], f: &mut Formatter<'_>) -> fmt::Result {
+    let mut kernels =
+        kernels.iter().filter(|kernel| kernel.statements + kernel.operations.total() > 0).peekable();
+    if kernels.peek().is_some() {
+        writeln!(f, "Operations per call      + −     ×     ÷  f(x)   temporaries  statements")?;
+    }
+    kernels.try_for_each(|kernel| write_kernel(kernel, f))
 }
 
 fn write_kernel(kernel: &KernelReport, f: &mut Formatter<'_>) -> fmt::Result {
@@ -110,19 +118,19 @@ impl Display for Count {
 impl SystemReport {
     /// The equations as a LaTeX environment `aligned`, to stand in math mode.
     pub const fn latex(&self) -> Latex<'_> {
-        Latex(self)
+        Latex(self.equations)
     }
 }
 
 /// The equations of a scene as LaTeX.
 #[derive(Clone, Copy, Debug)]
-pub struct Latex<'a>(&'a SystemReport);
+pub struct Latex<'a>(pub(super) &'a [Equation]);
 
 impl Display for Latex<'_> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         writeln!(f, "\\begin{{aligned}}")?;
-        let last = self.0.equations.len().saturating_sub(1);
-        for (index, equation) in self.0.equations.iter().enumerate() {
+        let last = self.0.len().saturating_sub(1);
+        for (index, equation) in self.0.iter().enumerate() {
             write!(f, "  {} &= {}", equation.left.latex, equation.right.latex)?;
             writeln!(f, "{}", if index == last { "" } else { " \\\\" })?;
         }

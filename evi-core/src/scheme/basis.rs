@@ -281,7 +281,7 @@ impl<const N: usize, const K: usize> InterpolationTable for CoordinateTable<N, K
 }
 
 /// The coefficients of one coordinate at every node, where they define a step.
-pub(super) fn checked_coefficients<const K: usize>(
+pub(crate) fn checked_coefficients<const K: usize>(
     frequency: Frequency,
     coordinate: usize,
     quadrature: &Quadrature<K>,

@@ -29,6 +29,8 @@ mod scene_frequencies;
 pub use about::{About, AboutTable};
 #[cfg(feature = "generic")]
 pub(crate) use basis::check_interpolant;
+#[cfg(feature = "std")]
+pub(crate) use basis::checked_coefficients;
 pub(crate) use basis::interpolate;
 pub use basis::{
     CoordinateTable, Interpolant, InterpolationTable, Linear, LinearTable, NodeCoefficients, UniformTable,

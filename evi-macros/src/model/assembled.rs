@@ -27,6 +27,8 @@ pub(crate) struct Assembled {
     pub(crate) observables: Vec<String>,
     /// What they are sums of: which of them, and terms over ranges.
     pub(crate) observed: Vec<(usize, Family)>,
+    /// What gives curves their frequency: elements that observe it, in the coordinates that take it.
+    pub(crate) frequencies: Vec<Family>,
     /// Indices that rustc checks.
     pub(crate) bounds: Vec<Bound>,
 }
@@ -51,6 +53,8 @@ struct Parts {
     forces: Vec<(usize, Named)>,
     constraints: Vec<Named>,
     observed: Option<Named>,
+    /// A coordinate whatever the expressions name.
+    coordinate: Option<usize>,
 }
 
 /// Resolves every name and finds the families.
@@ -86,6 +90,12 @@ pub(crate) fn resolve_assembled(
             observed.push((quantity, ranges, Parts { observed: Some(term), ..Parts::default() }));
         }
     }
+    for (_, frequency) in &found.frequencies {
+        sums.refuse_in(
+            frequency.root,
+            "a frequency of curves is made of parameters by their names and indices, not of sums over them",
+        );
+    }
     for constraint in &found.constraints {
         sums.refuse_in(
             constraint.root,
@@ -117,8 +127,14 @@ pub(crate) fn resolve_assembled(
     let families = families.into_iter().map(|(ranges, parts)| repeated(ranges, parts)).collect();
     let observed =
         observed.into_iter().map(|(quantity, ranges, parts)| (quantity, repeated(ranges, parts))).collect();
+    let frequencies = found.frequencies.iter().map(|(coordinate, frequency)| {
+        let parts =
+            Parts { observed: Some(frequency.clone()), coordinate: Some(*coordinate), ..Parts::default() };
+        repeated(frequency.ranges.clone(), parts)
+    });
+    let frequencies = frequencies.collect();
     let observables = found.observables.iter().map(|named| named.name.clone()).collect();
-    Some(Assembled { elements, families, observables, observed, bounds: tables.bounds })
+    Some(Assembled { elements, families, observables, observed, frequencies, bounds: tables.bounds })
 }
 
 /// What a sum is refused in, and what to write there.
@@ -150,11 +166,6 @@ fn are_equal(a: &Model, b: &Model) -> bool {
 
 /// Reports items that a sum of elements does not have.
 fn refuse(found: &Found, diagnostics: &mut Diagnostics) {
-    for (_, frequency) in &found.frequencies {
-        let message = "a scene has no `frequency` where sums stay loops: its curves are straight, or polynomials by `Galerkin`, which resolve \
-                       fast motions by nodes; with small literal sizes it may have one";
-        diagnostics.report(frequency.span, message);
-    }
     for observed in found.observables.iter().filter(|observed| !observed.ranges.is_empty()) {
         let message = "a quantity of a family is one number per element where sums stay loops: observe a `sum(..)`, or one element, `p[0]`; \
                        `StateWriter::of` records coordinates";
@@ -310,7 +321,8 @@ fn element(
         Symbol::Coordinate(place) | Symbol::Velocity(place) => Some(place),
         _ => None,
     };
-    let used: BTreeSet<usize> = symbols.iter().filter_map(coordinate).chain(forced).collect();
+    let used: BTreeSet<usize> =
+        symbols.iter().filter_map(coordinate).chain(forced).chain(parts.coordinate).collect();
     // In the order of the arrays and their indices, whatever the order of the terms.
     let sorted: BTreeMap<&Place, usize> = used.iter().map(|&place| (&tables.places[place], place)).collect();
     let local: HashMap<usize, usize> =

@@ -185,7 +185,10 @@ fn what_no_loop_over_elements_is_worth_is_refused() {
     );
     check_mistake(&items("force(p[0]: sum(0..N, |i| p[i]))"), "a force of a family names its elements");
     check_mistake(&items("force(p: 1.0)"), "write `p[i in 0..N]` for all of its elements");
-    check_mistake(&items("frequency(p[i in 0..N]: k)"), "a scene has no `frequency` where sums stay loops");
+    check_mistake(
+        &items("frequency(p[i in 0..N]: sum(0..N, |j| 1.0 * j))"),
+        "a frequency of curves is made of parameters by their names and indices",
+    );
     check_mistake(
         &items("observe(each[i in 0..N]: p[i])"),
         "a quantity of a family is one number per element where sums stay loops",

@@ -13,7 +13,7 @@ const N: usize = 10;
     constraint(all: sum(0..N, |i| p[i]) == 0.0),
     input(u),
     force(p[0]: u * sum(0..N, |i| p[i])),
-    frequency(p[0]: 1.0),
+    frequency(p[0]: sum(0..N, |i| 1.0 * i)),
     observe(each[i in 0..N]: p[i]),
     observe(length: sum(0..N, |i| p[i]).sqrt()),
 )]

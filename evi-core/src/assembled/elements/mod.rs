@@ -6,13 +6,16 @@ mod loops;
 mod observed;
 mod repeated;
 
-pub(super) use observed::{ObservedElements, Term};
+pub(super) use observed::{ObservedElement, ObservedElements, Term};
 pub(super) use repeated::Repeated;
+
+use std::ops::Range;
 
 use super::Point;
 use super::sparse::Symmetric;
 use crate::memory::Digest;
 use crate::scalar::{InstructionSet, Lanes};
+use crate::scheme::NodeCoefficients;
 use crate::system::{Structure, SystemReport};
 
 /// A family whose kernels add to vectors of the whole scene.
@@ -61,7 +64,7 @@ pub(super) trait Elements {
     fn add_second_derivatives(
         &self,
         at: Point<'_>,
-        weights: &SecondWeights,
+        weights: &SecondWeights<'_>,
         places: &[u32],
         entries: &mut [f64],
     );
@@ -89,10 +92,11 @@ pub(super) trait Elements {
     /// Overwrites `γ = vᵀ φ_qq v + 2 φ_qt v + φ_tt` of this family.
     fn curvature(&self, at: Point<'_>, values: &mut [f64]);
 
-    /// [`add_force`](Self::add_force) at a node per lane.
+    /// [`add_force`](Self::add_force) of some elements, at a node per lane.
     fn add_lane_force(
         &self,
         instructions: InstructionSet,
+        elements: Range<usize>,
         t: Lanes,
         q: &[Lanes],
         v: Option<&[Lanes]>,
@@ -117,8 +121,15 @@ pub(super) trait Elements {
         matrix: &mut Symmetric<Lanes>,
     );
 
-    /// [`constraints`](Self::constraints) at a node per lane.
-    fn lane_constraints(&self, instructions: InstructionSet, t: Lanes, q: &[Lanes], values: &mut [Lanes]);
+    /// [`constraints`](Self::constraints) of some elements, at a node per lane.
+    fn lane_constraints(
+        &self,
+        instructions: InstructionSet,
+        elements: Range<usize>,
+        t: Lanes,
+        q: &[Lanes],
+        values: &mut [Lanes],
+    );
 
     /// [`constraint_derivatives`](Self::constraint_derivatives) at a node per lane, without those by time.
     fn lane_constraint_derivatives(
@@ -130,10 +141,11 @@ pub(super) trait Elements {
         slopes: &mut [Lanes],
     );
 
-    /// Subtracts `Gᵀ x` from `force` at a node per lane.
+    /// Subtracts `Gᵀ x` of some elements from `force` at a node per lane; `x` is theirs.
     fn subtract_lane_pull(
         &self,
         instructions: InstructionSet,
+        elements: Range<usize>,
         t: Lanes,
         q: &[Lanes],
         x: &[Lanes],
@@ -151,7 +163,7 @@ pub(super) struct LanePoint<'a> {
 
 /// What second derivatives are multiplied with.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct SecondWeights {
+pub(super) struct SecondWeights<'c> {
     /// `∂²L/∂v²`.
     pub(super) vv: f64,
     /// `∂²L/∂v∂q`, row of `v`.
@@ -164,6 +176,52 @@ pub(super) struct SecondWeights {
     pub(super) fq: f64,
     /// `∂f/∂v`.
     pub(super) fv: f64,
+    /// Where curves of a frequency are varied, with the end of a step in a column and with its start in a row: derivatives by `q` are multiplied with
+    /// `g₂` and `g₁`, those by `v` with `h g₂'` and `−h g₁'`.
+    pub(super) curves: Option<&'c [NodeCoefficients]>,
+}
+
+impl SecondWeights<'_> {
+    /// The weight of `∂²L/∂v²`, between coordinates of the scene; the others likewise.
+    #[inline]
+    fn vv(&self, row: usize, col: usize) -> f64 {
+        self.vv * self.curves.map_or(1.0, |of| -of[row].start_rate() * of[col].end_rate())
+    }
+
+    #[inline]
+    fn vq(&self, row: usize, col: usize) -> f64 {
+        self.vq * self.curves.map_or(1.0, |of| -of[row].start_rate() * of[col].end())
+    }
+
+    #[inline]
+    fn qv(&self, row: usize, col: usize) -> f64 {
+        self.qv * self.of_start_and_rate(row, col)
+    }
+
+    #[inline]
+    fn qq(&self, row: usize, col: usize) -> f64 {
+        self.qq * self.of_start_and_end(row, col)
+    }
+
+    #[inline]
+    fn fq(&self, row: usize, col: usize) -> f64 {
+        self.fq * self.of_start_and_end(row, col)
+    }
+
+    #[inline]
+    fn fv(&self, row: usize, col: usize) -> f64 {
+        self.fv * self.of_start_and_rate(row, col)
+    }
+
+    #[inline]
+    fn of_start_and_rate(&self, row: usize, col: usize) -> f64 {
+        self.curves.map_or(1.0, |of| of[row].start() * of[col].end_rate())
+    }
+
+    #[inline]
+    fn of_start_and_end(&self, row: usize, col: usize) -> f64 {
+        self.curves.map_or(1.0, |of| of[row].start() * of[col].end())
+    }
 }
 
 /// Calls `visit(row, col)` for every number that second derivatives of an element add to a matrix over coordinates.

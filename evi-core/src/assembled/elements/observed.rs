@@ -11,6 +11,22 @@ pub(in super::super) trait Term {
     fn sum(&self, at: Point<'_>, inputs: &[f64]) -> f64;
 }
 
+/// An element that observes what depends on parameters alone.
+pub(in super::super) struct ObservedElement<E: MechanicalSystem>(E::PerConstant<f64>);
+
+impl<E: MechanicalSystem> ObservedElement<E> {
+    pub(in super::super) fn new(element: &E) -> Self {
+        Self(E::constants(&element.parameters()))
+    }
+
+    /// `Σ` of what is observed, at rest at the origin at time 0.
+    pub(in super::super) fn at_rest(&self) -> f64 {
+        let zero = E::PerCoordinate::<f64>::filled(0.0);
+        let inputs = E::PerInput::<f64>::filled(0.0);
+        E::observables(&self.0, 0.0, &zero, &zero, &inputs).as_ref().iter().sum()
+    }
+}
+
 /// Elements that observe.
 pub(in super::super) struct ObservedElements<E: MechanicalSystem>(Vec<Element<E>>);
 

@@ -1,5 +1,7 @@
 //! A family of elements of one type.
 
+use std::ops::Range;
+
 use super::super::Point;
 use super::super::sparse::Symmetric;
 use super::loops::{self, AddForce, AddGradient, AddMass, Constraints, SubtractPull};
@@ -153,7 +155,7 @@ impl<E: MechanicalSystem> Elements for Repeated<E> {
     fn add_second_derivatives(
         &self,
         at: Point<'_>,
-        weights: &SecondWeights,
+        weights: &SecondWeights<'_>,
         places: &[u32],
         entries: &mut [f64],
     ) {
@@ -168,25 +170,34 @@ impl<E: MechanicalSystem> Elements for Repeated<E> {
                     entries[place as usize] += value;
                 }
             };
-            for (block, weight) in [(structure.hessian.vv, weights.vv), (structure.hessian.qq, weights.qq)] {
+            let place = |coordinate: usize| element.places[coordinate] as usize;
+            type Weight<'w> = &'w dyn Fn(usize, usize) -> f64;
+            let of_v: Weight<'_> = &|row, col| weights.vv(row, col);
+            let of_q: Weight<'_> = &|row, col| weights.qq(row, col);
+            for (block, weight) in [(structure.hessian.vv, of_v), (structure.hessian.qq, of_q)] {
                 for entry in block {
-                    let value = weight * entry.value(constants, hessian.as_ref());
-                    add(value);
+                    let (row, col) = (place(entry.row), place(entry.col));
+                    let value = entry.value(constants, hessian.as_ref());
+                    add(weight(row, col) * value);
                     if entry.row != entry.col {
-                        add(value);
+                        add(weight(col, row) * value);
                     }
                 }
             }
             for entry in structure.hessian.vq {
+                let (row, col) = (place(entry.row), place(entry.col));
                 let value = entry.value(constants, hessian.as_ref());
-                add(weights.vq * value);
-                add(weights.qv * value);
+                add(weights.vq(row, col) * value);
+                add(weights.qv(col, row) * value);
             }
             if structure.forces.exist() {
                 let (_, varying) = E::force_derivatives(&element.constants, at.t, &q, &v, &self.inputs);
-                for (block, weight) in [(structure.forces.q, weights.fq), (structure.forces.v, weights.fv)] {
+                let of_q: Weight<'_> = &|row, col| weights.fq(row, col);
+                let of_v: Weight<'_> = &|row, col| weights.fv(row, col);
+                for (block, weight) in [(structure.forces.q, of_q), (structure.forces.v, of_v)] {
                     for entry in block {
-                        add(weight * entry.value(constants, varying.as_ref()));
+                        let value = entry.value(constants, varying.as_ref());
+                        add(weight(place(entry.row), place(entry.col)) * value);
                     }
                 }
             }
@@ -244,12 +255,14 @@ impl<E: MechanicalSystem> Elements for Repeated<E> {
     fn add_lane_force(
         &self,
         instructions: InstructionSet,
+        elements: Range<usize>,
         t: Lanes,
         q: &[Lanes],
         v: Option<&[Lanes]>,
         force: &mut [Lanes],
     ) {
-        instructions.run(AddForce { elements: &self.elements, at: (t, q, v), inputs: &self.inputs, force });
+        let elements = &self.elements[elements];
+        instructions.run(AddForce { elements, at: (t, q, v), inputs: &self.inputs, force });
     }
 
     fn add_lane_gradient(
@@ -272,8 +285,16 @@ impl<E: MechanicalSystem> Elements for Repeated<E> {
         instructions.run(AddMass { elements: &self.elements, at, places, matrix });
     }
 
-    fn lane_constraints(&self, instructions: InstructionSet, t: Lanes, q: &[Lanes], values: &mut [Lanes]) {
-        instructions.run(Constraints { elements: &self.elements, at: (t, q), values, slopes: None });
+    fn lane_constraints(
+        &self,
+        instructions: InstructionSet,
+        elements: Range<usize>,
+        t: Lanes,
+        q: &[Lanes],
+        values: &mut [Lanes],
+    ) {
+        let elements = &self.elements[elements];
+        instructions.run(Constraints { elements, at: (t, q), values, slopes: None });
     }
 
     fn lane_constraint_derivatives(
@@ -291,11 +312,12 @@ impl<E: MechanicalSystem> Elements for Repeated<E> {
     fn subtract_lane_pull(
         &self,
         instructions: InstructionSet,
+        elements: Range<usize>,
         t: Lanes,
         q: &[Lanes],
         x: &[Lanes],
         force: &mut [Lanes],
     ) {
-        instructions.run(SubtractPull { elements: &self.elements, at: (t, q), x, force });
+        instructions.run(SubtractPull { elements: &self.elements[elements], at: (t, q), x, force });
     }
 }

@@ -6,13 +6,16 @@
 mod landing;
 mod newton;
 mod passes;
+mod past;
 mod points;
+mod stages;
 mod start;
+mod sweeps;
 
+use super::assembly::Assembly;
 use super::scene::PreparedScene;
 use super::{AssembledScheme, AssembledState, AssembledStep, AssemblyError};
 use crate::integrator::{Galerkin, Iteration, IterationFailure, StepError, Symmetric as _, Tally};
-use crate::linear::largest_magnitude;
 use crate::memory::memory;
 use crate::newton::NotConverged;
 use crate::scalar::InstructionSet;
@@ -58,7 +61,7 @@ impl<const K: usize> AssembledScheme for Galerkin<K> {
         let nodes = match &scene.inertia {
             _ if self.is_by_newton() => None,
             Some(inertia) => {
-                let nodes = NodeStorage::new::<K>(&scene.assembly, &inertia.gram.pattern, h);
+                let nodes = NodeStorage::new::<K>(&scene.assembly, inertia, h);
                 Some(NodePasses::Blocks(Box::new(nodes)))
             }
             None => match PointStorage::new::<K>(&scene.assembly, h) {
@@ -144,7 +147,11 @@ impl<const K: usize> AssembledGalerkin<K> {
                 Err(failure) => failure,
             };
             if scene.points.is_none() {
-                let residual = self.nodes.as_ref().map_or(f64::NAN, NodePasses::largest_residual);
+                let instructions = self.instructions;
+                let residual = self
+                    .nodes
+                    .as_mut()
+                    .map_or(f64::NAN, |nodes| nodes.largest_residual(&scene.assembly, instructions, state.t));
                 return Err(IterationFailure::from(failure).at(state.t, residual, 1.0));
             }
             tally.count_newton();
@@ -192,15 +199,15 @@ memory!([const K: usize] AssembledGalerkin<K>, |words| Self { h, instructions: _
 impl NodePasses {
     fn knows_the_past(&self) -> bool {
         match self {
-            Self::Blocks(nodes) => nodes.knows_the_past(),
-            Self::Points(nodes) => nodes.knows_the_past(),
+            Self::Blocks(nodes) => nodes.past.is_known(),
+            Self::Points(nodes) => nodes.past.is_known(),
         }
     }
 
     fn forget(&mut self) {
         match self {
-            Self::Blocks(nodes) => nodes.forget(),
-            Self::Points(nodes) => nodes.forget(),
+            Self::Blocks(nodes) => nodes.past.forget(),
+            Self::Points(nodes) => nodes.past.forget(),
         }
     }
 
@@ -212,10 +219,10 @@ impl NodePasses {
     }
 
     /// `|φ|` at the nodes where the last pass has ended.
-    fn largest_residual(&self) -> f64 {
+    fn largest_residual(&mut self, assembly: &Assembly, instructions: InstructionSet, t: f64) -> f64 {
         match self {
-            Self::Blocks(nodes) => largest_magnitude(nodes.residuals().map(|lanes| lanes.largest())),
-            Self::Points(nodes) => largest_magnitude(nodes.residuals().map(|lanes| lanes.largest())),
+            Self::Blocks(nodes) => nodes.largest_residual(assembly, instructions, t),
+            Self::Points(nodes) => nodes.largest_residual(),
         }
     }
 }

@@ -267,7 +267,8 @@ impl NewtonTables {
         start: &AssembledState,
         node: usize,
     ) {
-        const NONE: SecondWeights = SecondWeights { vv: 0.0, vq: 0.0, qv: 0.0, qq: 0.0, fq: 0.0, fv: 0.0 };
+        const NONE: SecondWeights<'static> =
+            SecondWeights { vv: 0.0, vq: 0.0, qv: 0.0, qq: 0.0, fq: 0.0, fv: 0.0, curves: None };
         let (k, h, rates) = (self.intervals(), self.h, &self.rates[node]);
         let [time, weight] = self.nodes[node];
         let at = Point { t: start.t + time * h, q: &space.q, v: &space.v };
@@ -332,7 +333,7 @@ impl PointMatrix {
         &mut self,
         assembly: &Assembly,
         at: Point<'_>,
-        weights: SecondWeights,
+        weights: SecondWeights<'_>,
         add: impl FnMut(&mut [f64], f64),
     ) {
         self.entries.fill(0.0);

@@ -22,6 +22,8 @@ use super::super::lane_saddle::LaneSaddle;
 use super::super::scene::{PreparedScene, Space};
 use super::super::sparse::TooMuchFill;
 use super::passes::FirstGuess;
+use super::past::Past;
+use crate::linear::largest_magnitude;
 use crate::mechanics::{product, reach};
 use crate::memory::memory;
 use crate::newton::{LinearProgress, NotConverged};
@@ -32,7 +34,7 @@ use crate::scheme::{Columns, PAST, PointTables};
 const STALE: f64 = 3e-3;
 
 /// Velocities at the nodes `1 .. K` and multipliers at the nodes before the last.
-struct Motion {
+pub(super) struct Motion {
     velocities: Vec<Lanes>,
     multipliers: Vec<Lanes>,
 }
@@ -45,6 +47,11 @@ impl Motion {
         }
     }
 }
+
+memory!([] Motion, |words| Self { velocities, multipliers } => {
+    words.lane_slice(velocities);
+    words.lane_slice(multipliers);
+});
 
 /// What belongs to all nodes of a step.
 pub(super) struct PointStorage {
@@ -65,10 +72,7 @@ pub(super) struct PointStorage {
     slopes: Vec<Lanes>,
     /// The right-hand side of a pass, then what it moves: coordinates, then constraints.
     unknowns: Vec<Lanes>,
-    /// What the last steps have found, the last one first. It affects the number of passes and the last bits of a state, nothing else.
-    past: [Motion; PAST],
-    /// How many of them are known.
-    known: usize,
+    pub(super) past: Past<Motion>,
 }
 
 impl PointStorage {
@@ -91,30 +95,18 @@ impl PointStorage {
             values: lanes(m),
             slopes: lanes(assembly.slots.len()),
             unknowns: lanes(n + m),
-            past: core::array::from_fn(|_| Motion::rest(assembly)),
-            known: 0,
+            past: Past::none(|| Motion::rest(assembly)),
         })
-    }
-
-    pub(super) const fn knows_the_past(&self) -> bool {
-        self.known == PAST
-    }
-
-    /// Drops the past: the next step is not predicted from it.
-    pub(super) fn forget(&mut self) {
-        self.known = 0;
     }
 
     /// Keeps the motion of a step that was taken.
     pub(super) fn remember(&mut self) {
-        self.past.rotate_right(1);
-        std::mem::swap(&mut self.past[0], &mut self.motion);
-        self.known = PAST.min(self.known + 1);
+        self.past.remember(&mut self.motion);
     }
 
-    /// `φ` at the nodes where the last pass has ended.
-    pub(super) fn residuals(&self) -> impl Iterator<Item = Lanes> {
-        self.values.iter().map(|value| value.abs())
+    /// The largest `|φ|` at the nodes where the last pass has ended.
+    pub(super) fn largest_residual(&self) -> f64 {
+        largest_magnitude(self.values.iter().map(|value| value.abs().largest()))
     }
 
     /// Overwrites `space.moved` with the difference `q_K − q₀`, `space.p` with `p₀ + h Σ bⱼ Fⱼ` without the multipliers of the end, and `space.v` with
@@ -147,13 +139,8 @@ memory!([] PointStorage, |words|
         slopes: _,
         unknowns: _,
         past,
-        known,
     } => {
-        for Motion { velocities, multipliers } in past {
-            words.lane_slice(velocities);
-            words.lane_slice(multipliers);
-        }
-        words.index(known);
+        words.part(past);
     }
 );
 
@@ -186,7 +173,8 @@ impl PointStorage {
         start: &AssembledState,
         first: FirstGuess,
     ) {
-        let Self { tables, motion, past: [last, before], .. } = self;
+        let Self { tables, motion, past, .. } = self;
+        let [last, before] = past.found();
         match first {
             FirstGuess::Continued => {
                 let continued = |prediction: &[Columns; PAST], last: Lanes, before: Lanes| {
@@ -242,7 +230,8 @@ impl PointStorage {
                 matrix.factor::<FUSED>(assembly, instructions, at, slopes, units);
                 per_reach = 1.0 / self.reach::<K>(start);
             } else {
-                assembly.lane_constraints(instructions, times, positions, values);
+                let at = (times, &positions[..]);
+                assembly.lane_constraints(instructions, assembly.all(), at, values);
             }
             self.evaluate::<K>(assembly, space, start, times, instructions);
             passes += 1;
@@ -291,7 +280,7 @@ impl PointStorage {
         for (end, force) in end_force.iter_mut().zip(forces.iter()) {
             *end = force.to_array()[K - 1];
         }
-        assembly.subtract_lane_pull(instructions, times, positions, multipliers, forces);
+        assembly.subtract_lane_pull(instructions, assembly.all(), (times, positions), multipliers, forces);
         let at = Point { t: start.t, q: &start.q, v: start_velocity };
         assembly.gradient(at, &mut space.force, &mut space.momentum);
         for (slot, slope) in assembly.slots.iter().zip(&space.at_start.slopes) {

@@ -130,6 +130,17 @@ impl Elimination {
         }
     }
 
+    /// The unknown that a column eliminates.
+    pub(in super::super) fn pivot(&self, column: usize) -> usize {
+        self.pivots[column] as usize
+    }
+
+    /// Calls `visit` for the unknowns that a column couples: its pivot, and those below it.
+    pub(in super::super) fn for_each_unknown(&self, column: usize, mut visit: impl FnMut(usize)) {
+        visit(self.pivot(column));
+        self.rows[self.range(column)].iter().for_each(|&row| visit(row as usize));
+    }
+
     /// Number of unknowns.
     pub(in super::super) fn n_unknowns(&self) -> usize {
         self.pivots.len()

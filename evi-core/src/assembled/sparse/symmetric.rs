@@ -1,5 +1,7 @@
 //! `A = L D Lᵀ` for symmetric matrices.
 
+use std::ops::Range;
+
 use super::super::number::Number;
 use super::elimination::Place;
 use super::{Elimination, PivotShare};
@@ -83,19 +85,42 @@ impl<T: Number> Symmetric<T> {
     /// Overwrites the right-hand side with the solution; the matrix is factored.
     #[inline(always)]
     pub(in super::super) fn solve<const FUSED: bool>(&self, elimination: &Elimination, rhs: &mut [T]) {
-        for (column, &pivot) in elimination.pivots.iter().enumerate() {
-            let value = T::ZERO - rhs[pivot as usize];
+        let columns = 0..elimination.n_unknowns();
+        self.solve_forward::<FUSED>(elimination, columns.clone(), rhs);
+        self.solve_backward::<FUSED>(elimination, columns, rhs);
+    }
+
+    /// The first half of [`solve`](Self::solve), for some columns; those before them are done.
+    #[inline(always)]
+    pub(in super::super) fn solve_forward<const FUSED: bool>(
+        &self,
+        elimination: &Elimination,
+        columns: Range<usize>,
+        rhs: &mut [T],
+    ) {
+        for column in columns {
+            let value = T::ZERO - rhs[elimination.pivots[column] as usize];
             for entry in elimination.range(column) {
                 let row = elimination.rows[entry] as usize;
                 rhs[row] = rhs[row].plus_product::<FUSED>(self.below[entry], value);
             }
         }
-        for (column, &pivot) in elimination.pivots.iter().enumerate().rev() {
+    }
+
+    /// The second half of [`solve`](Self::solve), for some columns; those behind them are done.
+    #[inline(always)]
+    pub(in super::super) fn solve_backward<const FUSED: bool>(
+        &self,
+        elimination: &Elimination,
+        columns: Range<usize>,
+        rhs: &mut [T],
+    ) {
+        for column in columns.rev() {
             let mut sum = T::ZERO;
             for entry in elimination.range(column) {
                 sum = sum.plus_product::<FUSED>(self.below[entry], rhs[elimination.rows[entry] as usize]);
             }
-            let pivot = pivot as usize;
+            let pivot = elimination.pivots[column] as usize;
             rhs[pivot] = rhs[pivot] * self.diagonal[pivot] - sum;
         }
     }

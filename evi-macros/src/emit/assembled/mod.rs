@@ -37,17 +37,20 @@ pub(crate) fn assembled(
         .enumerate()
         .map(|(number, (model, programs))| element(declaration, number, model, graph, programs));
     let observed = assembled.observed.iter().map(|(_, family)| family);
+    let frequencies = assembled.frequencies.iter();
     let families: Vec<TokenStream> = assembled
         .families
         .iter()
         .chain(observed)
+        .chain(frequencies)
         .enumerate()
         .map(|(number, family)| {
             self::family(declaration, number, family, &assembled.elements[family.element])
         })
         .collect();
     let mut names: Vec<Ident> = (0..families.len()).map(family_name).collect();
-    let terms = names.split_off(assembled.families.len());
+    let mut terms = names.split_off(assembled.families.len());
+    let frequencies = terms.split_off(assembled.observed.len());
     let quantities = assembled.observed.iter().map(|(quantity, _)| quantity);
     let names_and_report = names_and_report(declaration, assembled, written);
     let n_coordinates = sum(coordinate_entries(declaration).iter().map(count));
@@ -77,6 +80,10 @@ pub(crate) fn assembled(
 
                 fn visit_observed<V: ::evi_core::__private::ObservedVisitor<Self>>(&self, visitor: &mut V) {
                     #(visitor.term::<#terms>(#quantities);)*
+                }
+
+                fn visit_frequencies<V: ::evi_core::__private::FrequencyVisitor<Self>>(&self, visitor: &mut V) {
+                    #(visitor.frequency::<#frequencies>();)*
                 }
             }
 
