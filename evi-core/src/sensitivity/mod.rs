@@ -32,7 +32,7 @@ mod vectors;
 pub use differentiable::{Backwards, Differentiable};
 pub use direction::Direction;
 pub use error::DerivativeError;
-pub use galerkin::NewtonWorkspace;
+pub use galerkin::GalerkinWorkspace;
 pub use gauss::{GaussWorkspace, TakenGaussStep};
 pub use gradient::{Cost, Course, Gradient};
 pub use lyapunov::LyapunovRun;

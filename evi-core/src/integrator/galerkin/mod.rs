@@ -7,7 +7,9 @@ mod points;
 use core::fmt;
 
 use super::{Compensable, CompensableStep, OneStep, Scheme, StepError, Symmetric, Tally};
-use crate::mechanics::{Dropped, GalerkinAction, Lost, LostDigits, Mechanics, Points, RoundOff, State, Sum};
+use crate::mechanics::{
+    ConstantLegendre, Dropped, GalerkinAction, Lost, LostDigits, Mechanics, Points, RoundOff, State, Sum,
+};
 use crate::memory::memory;
 use crate::newton::TARGET;
 use crate::scalar::InstructionSet;
@@ -157,9 +159,18 @@ impl<S: MechanicalSystem, F: NodalCurves<S>, const K: usize> GalerkinStep<S, F, 
         &self.action
     }
 
-    /// The points of the step from `start` that was taken last, where passes on a constant mass have found them.
-    pub(crate) fn points_found(&self, start: &State<S>) -> Option<Points<S, K>> {
-        self.passes.as_ref()?.points_found(start)
+    /// The Legendre transform of steps that are found by passes on a constant mass.
+    pub(crate) fn legendre(&self) -> Option<&ConstantLegendre<S>> {
+        self.passes.as_ref().map(LanePasses::legendre)
+    }
+
+    /// The points of the step from `start` to `end` that was taken last, and its `p⁻`, where passes on a constant mass have found them.
+    pub(crate) fn found(
+        &self,
+        start: &State<S>,
+        end: &State<S>,
+    ) -> Option<(Points<S, K>, S::PerCoordinate<f64>)> {
+        self.passes.as_ref()?.found(&self.action.mechanics, start, end)
     }
 
     /// How its steps are solved: which iteration, in which vector instructions; to be printed.
