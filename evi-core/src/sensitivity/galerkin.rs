@@ -3,19 +3,14 @@
 use super::evaluation::Point;
 use super::nodes::{NodeAction, OnNodes};
 use super::parameters::Seeds;
-use super::points::{PerPoint, PointAction, Points as AlongPoints, StepDerivative, TakenStep, zero};
+use super::points::{PerPoint, Points as AlongPoints, StepDerivative, TakenStep, zero};
 use super::{Backwards, DerivativeError, Differentiable, StateGradient, StateTangent};
 use crate::array::Array;
 use crate::integrator::{GalerkinStep, NewtonSolve, OneStep, Tally};
-use crate::linear::largest_magnitude;
 use crate::mechanics::{Arrival, BackStep, GalerkinAction, Mechanics, Points, State};
 use crate::newton::NotConverged;
 use crate::scheme::{NodalCurves, NodalTables};
 use crate::system::MechanicalSystem;
-
-/// Passes and Newton's iteration solve the same equations: their ends differ by round-off and by what the last pass left, far below this share of
-/// the configuration. Another solution is a step away.
-const SAME_END: f64 = 1e-7;
 
 impl<S: MechanicalSystem, T: NodalTables<K>, const K: usize> NodeAction<S, K> for GalerkinAction<S, T, K> {
     fn mechanics(&self) -> &Mechanics<S> {
@@ -58,25 +53,6 @@ impl<S: MechanicalSystem, T: NodalTables<K>, const K: usize> NodeAction<S, K> fo
     }
 }
 
-/// The points of the step from `start` to `end`, by Newton's iteration.
-fn found_again<S: MechanicalSystem, T: NodalTables<K>, const K: usize>(
-    action: &GalerkinAction<S, T, K>,
-    newton: &mut NewtonSolve<S, K>,
-    start: &State<S>,
-    end: &State<S>,
-) -> Result<Points<S, K>, DerivativeError> {
-    let points = newton.solve(action, start, &mut ())?;
-    let last = &points.differences[K - 1];
-    let apart = largest_magnitude((0..S::N_COORDINATES).map(|i| start.q[i] + last[i] - end.q[i]));
-    let reach = largest_magnitude(end.q.as_ref().iter().chain(last.as_ref()).copied());
-    let is_same = apart <= SAME_END * reach;
-    if is_same {
-        Ok(points)
-    } else {
-        Err(DerivativeError::InnerPoints { t: start.t, distance: apart / reach })
-    }
-}
-
 /// The points as the equations of the step have them.
 fn points<S: MechanicalSystem, const K: usize>(h: f64, step: &TakenStep<S, K>) -> Points<S, K> {
     let impulses = core::array::from_fn(|a| Array::from_fn(|c| h * step.impulses[a][c]));
@@ -96,23 +72,17 @@ impl<S: MechanicalSystem, F: NodalCurves<S>, const K: usize> Differentiable<S> f
 
     fn advance_taking_notes(
         &mut self,
-        GalerkinWorkspace { newton, .. }: &mut Self::Workspace,
+        _: &mut Self::Workspace,
         state: &mut State<S>,
         tally: &mut impl Tally,
     ) -> Result<TakenStep<S, K>, DerivativeError> {
         let start = state.clone();
         let mut end = state.clone();
         self.advance(&mut end, tally)?;
-        let action = self.action();
-        let (Points { differences, impulses }, arriving) = match self.found(&start, &end) {
-            Some(found) => found,
-            None => {
-                let points = found_again(action, newton, &start, &end)?;
-                let [_, arriving] = OnNodes(action).end_momenta(&start, &points.differences);
-                (points, arriving)
-            }
+        let Some((Points { differences, impulses }, arriving)) = self.found(&start, &end) else {
+            unreachable!("a step that was taken has found its points")
         };
-        let h = action.h();
+        let h = self.action().h();
         let impulses = core::array::from_fn(|a| Array::from_fn(|c| impulses[a][c] / h));
         *state = end.clone();
         Ok(TakenStep { start, end, differences, impulses, arriving })
