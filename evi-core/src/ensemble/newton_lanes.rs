@@ -1,7 +1,7 @@
 //! Eight members' steps whose positions and multipliers are found together: Newton's iteration, member by lane.
 //!
 //! The equations are those of `mechanics/step_equations`, for every `L` that is quadratic in the velocity. A lane that has converged is frozen while others
-//! go on; one that does not converge in [`MOST`] corrections, or whose matrix needs pivoting, is taken alone.
+//! go on; one that does not converge in `MOST` corrections, or whose matrix needs pivoting, is taken alone.
 
 use super::lane_kkt::{LaneKkt, Unknowns};
 use super::lane_map::LaneMap;
