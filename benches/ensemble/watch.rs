@@ -11,8 +11,8 @@ pub(crate) struct Watch {
 
 impl Watch {
     /// Of so many pieces of work.
-    pub(crate) fn of(pieces: usize) -> Result<Self, ctrlc::Error> {
-        Ok(Self { bar: progress::bar(pieces as u64), interruption: Interruption::listen()? })
+    pub(crate) fn of(pieces: usize, interruption: Interruption) -> Self {
+        Self { bar: progress::bar(pieces as u64), interruption }
     }
 
     /// Shows what is done next; whether it is wanted.

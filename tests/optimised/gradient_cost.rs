@@ -56,13 +56,11 @@ const COUNTED: [Counted; 3] = [
         gradient: |steps| counted_gradient(&motorised(), steps),
         most: 5.0,
     },
-    // Beyond five: the step is solved by passes and factors nothing, its derivative factors the matrix of all points once. 5.7 measured with passes in
-    // SSE2, 11 where the feature `dispatch` lets them be AVX2: the run is cheaper then.
     Counted {
         name: "double pendulum with constraints, Galerkin steps, by five parameters",
         run: |steps| counted_run(&by_passes(), steps),
         gradient: |steps| counted_gradient(&by_passes(), steps),
-        most: 14.0,
+        most: 5.0,
     },
 ];
 

@@ -221,6 +221,29 @@ fn motorised<F>(scheme: F) -> Case<MotorisedDoublePendulum, F, 2> {
     Case { system, scheme, start, fields }
 }
 
+/// A bead on a sphere that breathes, in a trap that is not quadratic, driven around by a force that has no potential: all that steps with a constant
+/// mass can have at their inner points, but for forces on velocities.
+#[derive(MechanicalSystem, Clone, Copy)]
+#[evi(
+    coordinates(x, y, z),
+    kinetic = 0.5 * m * (der(x).powi(2) + der(y).powi(2)) + 0.5 * n * der(z).powi(2),
+    potential = m * g * z + 0.25 * k * (x.powi(4) + 2.0 * y.powi(4)) + x * y * z,
+    constraint(sphere: x.powi(2) + y.powi(2) + z.powi(2) == (l + a * (w * t).sin()).powi(2)),
+    input(push),
+    force(x: -c * y + push),
+    force(y: 2.0 * c * x),
+)]
+struct DrivenBead {
+    m: f64,
+    n: f64,
+    g: f64,
+    k: f64,
+    l: f64,
+    a: f64,
+    w: f64,
+    c: f64,
+}
+
 /// A pendulum whose rod is written down twice.
 #[derive(MechanicalSystem, Clone, Copy)]
 #[evi(
@@ -261,6 +284,19 @@ fn mass_that_depends_on_the_configuration_with_forces_that_are_not_symmetric() {
 #[test]
 fn inner_points_on_constraints() {
     double_pendulum(Galerkin::<3>::new(H)).check();
+}
+
+#[test]
+fn inner_points_with_a_potential_forces_and_a_constraint_that_moves() {
+    let system = DrivenBead { m: 1.3, n: 0.8, g: 9.81, k: 3.0, l: 0.9, a: 0.1, w: 7.0, c: 1.7 };
+    let scheme = Galerkin::<4>::new(H);
+    let run = Simulation::new(system, scheme).start_projected(0.0, [0.5, 0.4, -0.6], [0.8, -0.5, 0.3]);
+    let run = run.expect("a start");
+    let start = Start { q: *run.state().q(), v: *run.state().v() };
+    let fields = fields!(DrivenBead: m n g k l a w c);
+    Case { system, scheme, start, fields: fields.clone() }.check();
+    // By Newton's iteration the same steps, and their derivatives from the matrix of all points.
+    Case { system, scheme: scheme.by_newton(), start, fields }.check();
 }
 
 #[test]

@@ -104,6 +104,39 @@ fn a_start_beside_the_constraints() {
     );
 }
 
+/// A particle on a hilltop.
+#[derive(Clone, Copy, MechanicalSystem)]
+#[evi(
+    coordinates(x),
+    kinetic = 0.5 * m * der(x).powi(2),
+    potential = -0.5 * k * (x - 1.0).powi(2),
+)]
+struct Hilltop {
+    m: f64,
+    k: f64,
+}
+
+/// At rest on a hilltop the step stays there, whatever its size is. Of size `h² k/m = 24` the matrix of a step with two intervals is singular,
+/// `256 − 2 (32 + 4 h² k/m) = 0`: any end follows from a start beside the top.
+#[test]
+fn a_step_whose_end_does_not_follow_from_its_start() {
+    let simulation = Simulation::new(Hilltop { m: 1.0, k: 96.0 }, Galerkin::<2>::new(0.5));
+    let of_state = |_: u64, state: &State<Hilltop>, gradient: &mut StateGradient<Hilltop>| {
+        gradient.q[0] += 1.0;
+        state.q()[0]
+    };
+    let course = Course::new([1.0], [0.0], 3);
+    assert_eq!(simulation.cost_of(&course, &of_state), Ok(4.0));
+    let error = simulation.gradient_of(&course, &of_state).err();
+    // The last step is the first one on the way back.
+    assert!(matches!(error, Some(DerivativeError::Singular { t: 1.0, .. })), "{error:?}");
+    let direction = Direction::of_start([1.0], [0.0]);
+    let mut run = simulation.start_with_tangents([1.0], [0.0], &[direction]).expect("a start");
+    let error = run.advance().err();
+    assert!(matches!(error, Some(DerivativeError::Singular { t: 0.0, .. })), "{error:?}");
+    assert_eq!((run.state().t(), *run.tangents()[0].q()), (0.0, [1.0]));
+}
+
 /// A step without solution: state and vectors stand where they stood.
 #[test]
 fn a_step_that_fails() {

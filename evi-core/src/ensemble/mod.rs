@@ -8,6 +8,7 @@
 //! in company is taken alone.
 
 mod chunk;
+mod composed_lanes;
 mod evi_lanes;
 mod failure;
 mod galerkin_landing;
@@ -16,6 +17,7 @@ mod galerkin_passes;
 mod gather;
 mod journal;
 mod kicks;
+mod lane_kkt;
 mod lane_map;
 mod lane_matrix;
 mod lane_span;
@@ -24,6 +26,8 @@ mod mask;
 mod members;
 mod multiplier_lanes;
 mod multiplier_search;
+mod newton_lanes;
+mod node_lanes;
 #[cfg(feature = "mpi")]
 mod processes;
 mod projection;

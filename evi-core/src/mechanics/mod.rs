@@ -54,7 +54,9 @@ pub(crate) use implicit_step::{ImplicitStep, StepSolution, StepStart};
 pub(crate) use impulse_step::ImpulseStep;
 pub(crate) use kick_drift_kick::KickDriftKick;
 #[cfg(feature = "std")]
-pub(crate) use lane_step::{FirstGuess, LaneEnd, LaneStep, Passes, product, product_of_stored, reach};
+pub(crate) use lane_step::{
+    Arrival, BackStep, FirstGuess, LaneEnd, LaneStep, Passes, product, product_of_stored, reach,
+};
 pub(crate) use leapfrog_step::LeapfrogStep;
 pub(crate) use legendre::ConstantLegendre;
 #[cfg(feature = "std")]

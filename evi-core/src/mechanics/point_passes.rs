@@ -20,7 +20,7 @@
 
 use super::lane_step::{from_start, nothing, product, reach};
 use super::point_guess::{FirstPoints, NodeMotion, NodeMultipliers, Nodes, PointGuess};
-use super::{ForcePoint, Mechanics, State};
+use super::{ForcePoint, Mechanics, Points, State};
 use crate::array::Array;
 use crate::linear::{LaneGram, LaneMass, factor_mass};
 use crate::newton::{LinearProgress, NotConverged};
@@ -39,6 +39,8 @@ pub(crate) struct PointPasses<S: MechanicalSystem, const K: usize> {
     gram: LaneGram<S>,
     /// What the last passes have found.
     pub(crate) found: NodeMotion<S>,
+    /// `q_a − q₀` of the last passes, `a = 1 .. K`.
+    differences: Nodes<S>,
 }
 
 /// What a step changes, before the constraints are met at its end to round-off.
@@ -93,7 +95,19 @@ impl<S: MechanicalSystem, const K: usize> PointPasses<S, K> {
             mass: LaneMass::<S>::new(masses, false),
             gram: LaneGram::<S>::new(S::STRUCTURE.constraint_graph.iter().copied(), couples_all),
             found: NodeMotion::rest(),
+            differences: nothing(),
         }
+    }
+
+    /// The points of the last passes, of size `h`: as the equations of all points have them, which know `h² b λ`.
+    pub(crate) fn points_found(&self, h: f64) -> Points<S, K> {
+        let weights = self.tables.lobatto.weights.to_array();
+        let difference = |a: usize| Array::from_fn(|i| self.differences[i].to_array()[a]);
+        let impulse = |a: usize| {
+            let lane = if a == 0 { K - 1 } else { a - 1 };
+            Array::from_fn(|c| h * weights[lane] * self.found.multipliers[c].to_array()[lane])
+        };
+        Points { differences: core::array::from_fn(difference), impulses: core::array::from_fn(impulse) }
     }
 
     #[inline(always)]
@@ -164,7 +178,8 @@ impl<S: MechanicalSystem, const K: usize> PointPasses<S, K> {
             passes += 1;
             if is_last {
                 self.found = NodeMotion { velocities, multipliers };
-                return self.end((differences, &at), passes);
+                self.differences = differences;
+                return self.end(&at, passes);
             }
             let mut residual: Nodes<S> = nothing();
             for i in 0..n {
@@ -195,17 +210,13 @@ impl<S: MechanicalSystem, const K: usize> PointPasses<S, K> {
     /// # Errors
     /// [`NotConverged`] if it is not finite: comparisons lose a NaN on the way, in the sums over all nodes it arrives.
     #[inline(always)]
-    fn end(
-        &self,
-        (differences, at): (Nodes<S>, &AtNodes<S>),
-        passes: usize,
-    ) -> Result<PointEnd<S>, NotConverged> {
+    fn end(&self, at: &AtNodes<S>, passes: usize) -> Result<PointEnd<S>, NotConverged> {
         let (mut difference, mut gain, mut velocity) =
             (sums::<S>(|_| 0.0), sums::<S>(|_| 0.0), sums::<S>(|_| 0.0));
         let mut total = 0.0;
         for i in 0..S::N_COORDINATES {
             let before_last = (self.tables.lobatto.weights * at.forces[i]).sum();
-            difference[i] = differences[i].to_array()[K - 1];
+            difference[i] = self.differences[i].to_array()[K - 1];
             gain[i] = self.tables.lobatto.last_weight * at.end_force[i] + before_last;
             velocity[i] = self.found.velocities[i].to_array()[K - 1];
             total += difference[i] + gain[i];

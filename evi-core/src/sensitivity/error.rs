@@ -53,17 +53,6 @@ pub enum DerivativeError {
         /// Time.
         t: f64,
     },
-    /// The inner points that Newton's iteration finds belong to another end than that of the step.
-    #[error(
-        "the inner points of the step from t = {t} are not found: those of Newton's iteration lead {distance:e} of the configuration \
-         beside its end. Try a smaller step size"
-    )]
-    InnerPoints {
-        /// Time at the start of the step.
-        t: f64,
-        /// Distance of the ends, relative to the configuration.
-        distance: f64,
-    },
     /// Not one list of inputs per step.
     #[error("{found} lists of inputs for {steps} steps: give one for each")]
     InputCount {

@@ -1,6 +1,6 @@
 //! Kernels of a scene along a direction: the products of their derivatives with vectors that sensitivities are made of.
 
-use super::parameters::Seeds;
+use super::parameters::{Reach, Seeds};
 use super::{StateGradient, StateTangent};
 use crate::array::Array;
 use crate::mechanics::{ForcePoint, Mechanics};
@@ -108,7 +108,8 @@ impl<S: MechanicalSystem> Point<'_, S> {
         gradient: &mut StateGradient<S>,
     ) {
         let Self { t, q, v, inputs } = *self;
-        seeds.add_parameter_rates(&mut gradient.parameters, |constants| {
+        let follows = |reach: &Reach| reach.force || reach.momentum;
+        seeds.add_parameter_rates(&mut gradient.parameters, follows, |constants| {
             let (q, v) = (still::<S, _>(q), still::<S, _>(v));
             let inputs = Array::from_fn(|k| Tangent::still(inputs[k]));
             let rates = forced_gradient::<S, _>(constants, Tangent::still(t), &q, &v, &inputs);

@@ -106,8 +106,7 @@ impl<S: MechanicalSystem, F: Scheme<S, Step: Differentiable<S>>> Simulation<S, F
         Ok(sum + cost.add(course.steps, run.state(), &mut unwanted))
     }
 
-    /// The number of a course with all of its derivatives: in the time of three to five runs of an [`Evi`](crate::integrator::Evi), of which five parameters take one; in that
-    /// of twenty of a [`Galerkin`](crate::integrator::Galerkin) scheme by passes, whose steps never factor the matrix that a derivative needs.
+    /// The number of a course with all of its derivatives: in the time of three to five runs, of which five parameters take up to one.
     ///
     /// # Errors
     /// As for [`cost_of`](Self::cost_of); and where the equations of a step do not determine its derivative.

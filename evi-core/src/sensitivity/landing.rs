@@ -7,7 +7,7 @@
 //! gives `(v₁, N, p₁)` as functions of `(q₁, p⁻)` and of the parameters. Both directions solve with one symmetric matrix, `[M Gᵀ; G 0]`.
 
 use super::evaluation::{ConstraintRates, moving, still};
-use super::parameters::{MovingConstants, Seeds};
+use super::parameters::{MovingConstants, Reach, Seeds};
 use super::{DerivativeError, StateGradient};
 use crate::array::Array;
 use crate::linear::{FactoredKkt, Factorization, Kkt, constraint_index, unknowns};
@@ -222,7 +222,8 @@ impl<'a, S: MechanicalSystem> Landing<'a, S> {
             along.add_pull(-1.0, impulse, &mut at_end.q);
             self.subtract_rate_derivatives(seeds, &by_rate, at_end);
             if seeds.reach.jacobian {
-                seeds.add_parameter_rates(&mut at_end.parameters, |constants| {
+                let follows = |reach: &Reach| reach.jacobian;
+                seeds.add_parameter_rates(&mut at_end.parameters, follows, |constants| {
                     let q = still::<S, _>(&self.state.q);
                     let rates = ConstraintRates::<S, _>::new(constants, Tangent::still(self.state.t), &q);
                     -rates.form(impulse, &by_arriving)
@@ -245,7 +246,8 @@ impl<'a, S: MechanicalSystem> Landing<'a, S> {
             self.subtract_rate_derivatives(seeds, &by_rate, at_start);
             let (_, by_residual) = self.split(|i| at_start.q[i], |_| 0.0);
             self.subtract_pull(&by_residual, &mut at_start.q);
-            seeds.add_parameter_rates(&mut at_start.parameters, |constants| {
+            let follows = |reach: &Reach| reach.residuals;
+            seeds.add_parameter_rates(&mut at_start.parameters, follows, |constants| {
                 let q = still::<S, _>(&self.state.q);
                 let residual = S::constraints(constants, Tangent::still(self.state.t), &q);
                 (0..S::N_CONSTRAINTS).fold(Rate::ZERO, |sum, c| sum - residual[c].rate.times(by_residual[c]))
@@ -272,11 +274,15 @@ impl<'a, S: MechanicalSystem> Landing<'a, S> {
         if !seeds.reach.momentum {
             return;
         }
-        seeds.add_parameter_rates(&mut sum.parameters, |constants| {
-            let (q, v) = (still::<S, _>(q), still::<S, _>(v));
-            let momentum = S::lagrangian_gradient(constants, Tangent::still(*t), &q, &v).momentum;
-            (0..S::N_COORDINATES).fold(Rate::ZERO, |sum, i| sum + momentum[i].rate.times(w[i]))
-        });
+        seeds.add_parameter_rates(
+            &mut sum.parameters,
+            |reach| reach.momentum,
+            |constants| {
+                let (q, v) = (still::<S, _>(q), still::<S, _>(v));
+                let momentum = S::lagrangian_gradient(constants, Tangent::still(*t), &q, &v).momentum;
+                (0..S::N_COORDINATES).fold(Rate::ZERO, |sum, i| sum + momentum[i].rate.times(w[i]))
+            },
+        );
     }
 
     /// Subtracts the derivatives of `x · (G v + ∂φ/∂t)` at a fixed velocity.
@@ -291,10 +297,14 @@ impl<'a, S: MechanicalSystem> Landing<'a, S> {
         if !seeds.reach.jacobian {
             return;
         }
-        seeds.add_parameter_rates(&mut sum.parameters, |constants| {
-            let rates = ConstraintRates::<S, _>::new(constants, Tangent::still(*t), &still::<S, _>(q));
-            -(rates.form(x, v) + rates.time_form(x))
-        });
+        seeds.add_parameter_rates(
+            &mut sum.parameters,
+            |reach| reach.jacobian,
+            |constants| {
+                let rates = ConstraintRates::<S, _>::new(constants, Tangent::still(*t), &still::<S, _>(q));
+                -(rates.form(x, v) + rates.time_form(x))
+            },
+        );
     }
 
     /// Subtracts `Gᵀ x`.

@@ -5,7 +5,7 @@
 //!
 //! - forward, for few directions and all states: [`TangentRun`];
 //! - backwards, for one number and all that it follows from: [`Simulation::gradient_of`](crate::integrator::Simulation::gradient_of), in the time of
-//!   three to five runs of an `Evi` and with `O(√N)` states kept of `N` steps;
+//!   three to five runs and with `O(√N)` states kept of `N` steps;
 //! - Lyapunov exponents: [`LyapunovRun`];
 //! - a run as a function with a gradient, for optimizers: [`Objective`].
 
@@ -32,7 +32,7 @@ mod vectors;
 pub use differentiable::{Backwards, Differentiable};
 pub use direction::Direction;
 pub use error::DerivativeError;
-pub use galerkin::NewtonWorkspace;
+pub use galerkin::GalerkinWorkspace;
 pub use gauss::{GaussWorkspace, TakenGaussStep};
 pub use gradient::{Cost, Course, Gradient};
 pub use lyapunov::LyapunovRun;

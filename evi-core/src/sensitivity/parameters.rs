@@ -6,11 +6,11 @@
 use std::vec::Vec;
 
 use super::DerivativeError;
-use super::evaluation::still;
+use super::evaluation::{forced_gradient, still};
 use crate::array::Array;
 use crate::mechanics::{Mechanics, State};
 use crate::scalar::{Rate, Rates, Tangent};
-use crate::system::MechanicalSystem;
+use crate::system::{LagrangianGradient, MechanicalSystem};
 
 /// How many derivatives by parameters or inputs one evaluation of a kernel gives.
 pub(super) const ABREAST: usize = 4;
@@ -95,8 +95,8 @@ pub(super) struct Seeds<S: MechanicalSystem> {
     /// Constants that stay as they are.
     pub(super) still: MovingConstants<S>,
     still_abreast: ConstantsAbreast<S>,
-    /// Of every [`ABREAST`] of the parameters.
-    by_parameters: Vec<ConstantsAbreast<S>>,
+    /// Of every [`ABREAST`] of the parameters, with what follows these.
+    by_parameters: Vec<(ConstantsAbreast<S>, Reach)>,
     pub(super) n_parameters: usize,
     pub(super) reach: Reach,
 }
@@ -107,16 +107,19 @@ pub(super) struct Reach {
     pub(super) residuals: bool,
     pub(super) jacobian: bool,
     pub(super) momentum: bool,
+    pub(super) force: bool,
 }
 
 impl Reach {
     /// Rates of the chosen parameters that are no numbers reach everything that an operation joins to them, whatever the values are.
-    fn of<S: MechanicalSystem>(system: &S, choice: &ParameterChoice, at: &State<S>) -> Self {
+    fn of<S: MechanicalSystem>(system: &S, chosen: &[usize], at: &State<S>) -> Self {
         let parameters = system.parameters();
-        let rate = |k: usize| if choice.indices.contains(&k) { f64::NAN } else { 0.0 };
+        let rate = |k: usize| if chosen.contains(&k) { f64::NAN } else { 0.0 };
         let constants = S::constants(&Array::from_fn(|k| Tangent::new(parameters[k], rate(k))));
         let (t, q, v) = (Tangent::still(at.t), still::<S, f64>(&at.q), still::<S, f64>(&at.v));
-        let momentum = S::lagrangian_gradient(&constants, t, &q, &v).momentum;
+        let inputs = Array::from_fn(|k| Tangent::still(at.inputs[k]));
+        let LagrangianGradient { force, momentum } =
+            forced_gradient::<S, f64>(&constants, t, &q, &v, &inputs);
         let (residuals, entries) = S::constraint_derivatives(&constants, t, &q);
         let follows = |x: &Tangent| x.rate.is_nan();
         let structure = S::STRUCTURE.jacobian;
@@ -128,6 +131,7 @@ impl Reach {
                 .chain(structure.t)
                 .any(|entry| follows(&entry.value(constants.as_ref(), entries.as_ref()))),
             momentum: momentum.as_ref().iter().any(follows),
+            force: force.as_ref().iter().any(follows),
         }
     }
 }
@@ -142,27 +146,32 @@ impl<S: MechanicalSystem> Seeds<S> {
         let parameters = system.parameters();
         let chunk = |indices: &[usize]| {
             let rate = |k: usize| indices.iter().position(|&index| index == k);
-            S::constants(&Array::from_fn(|k| {
+            let constants = S::constants(&Array::from_fn(|k| {
                 Tangent::new(parameters[k], rate(k).map_or(Rates::ZERO, Rates::unit))
-            }))
+            }));
+            (constants, Reach::of(system, indices, start))
         };
         Self {
             still: Array::from_fn(|k| Tangent::still(mechanics.constants[k])),
             still_abreast: Array::from_fn(|k| Tangent::still(mechanics.constants[k])),
             by_parameters: choice.indices.chunks(ABREAST).map(chunk).collect(),
             n_parameters: choice.indices.len(),
-            reach: Reach::of(system, choice, start),
+            reach: Reach::of(system, &choice.indices, start),
         }
     }
 
-    /// Adds to every entry of `gradient`, one per chosen parameter, what `rates` makes of the constants along it.
+    /// Adds to every entry of `gradient`, one per chosen parameter, what `rates` makes of the constants along it: where this `follows` the parameter.
     #[inline]
     pub(super) fn add_parameter_rates(
         &self,
         gradient: &mut [f64],
+        follows: impl Fn(&Reach) -> bool,
         mut rates: impl FnMut(&ConstantsAbreast<S>) -> Rates<ABREAST>,
     ) {
-        for (constants, gradient) in self.by_parameters.iter().zip(gradient.chunks_mut(ABREAST)) {
+        for ((constants, reach), gradient) in self.by_parameters.iter().zip(gradient.chunks_mut(ABREAST)) {
+            if !follows(reach) {
+                continue;
+            }
             for (sum, rate) in gradient.iter_mut().zip(rates(constants).0) {
                 *sum += rate;
             }

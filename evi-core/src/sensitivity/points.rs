@@ -13,7 +13,7 @@
 
 use super::evaluation::{ConstraintRates, moving};
 use super::landing::{Landing, Moved};
-use super::parameters::Seeds;
+use super::parameters::{Reach, Seeds};
 use super::{DerivativeError, StateGradient, StateTangent};
 use crate::array::Array;
 use crate::linear::constraint_index;
@@ -174,8 +174,18 @@ impl<'a, S: MechanicalSystem, N: PointAction<S, A>, const A: usize> StepDerivati
         gradient: &mut StateGradient<S>,
         solve: impl FnOnce(&mut Blocks<S, A>),
     ) {
-        let TakenStep { start, impulses, .. } = self.step;
-        let by_arriving = self.landing.backward(seeds, &self.removed, gradient);
+        let by_arriving = self.before_landing(seeds, gradient);
+        self.pull_back_from(by_arriving, seeds, gradient, solve);
+    }
+
+    /// The same for a gradient that has gone back over the landing, where it has the derivatives `by_arriving` by `p⁻`.
+    pub(super) fn pull_back_from(
+        &self,
+        by_arriving: S::PerCoordinate<f64>,
+        seeds: &Seeds<S>,
+        gradient: &mut StateGradient<S>,
+        solve: impl FnOnce(&mut Blocks<S, A>),
+    ) {
         let mut along = Points::<S, A>::zero();
         along.others[A - 1] = by_arriving;
         let mut by_points = self.action.products(self.step, seeds, &along);
@@ -195,20 +205,53 @@ impl<'a, S: MechanicalSystem, N: PointAction<S, A>, const A: usize> StepDerivati
         gradient.q = Array::from_fn(|i| by_points.first[i] + by_start[i]);
         gradient.p = of_rows.first.clone();
         gradient.v = zero::<S>();
-        if S::N_CONSTRAINTS > 0 {
-            let t = Tangent::still(start.t);
-            let rates = ConstraintRates::<S>::new(&seeds.still, t, &moving::<S>(&start.q, &of_rows.first));
-            rates.add_pull(-1.0, &impulses[0], &mut gradient.q);
-            let of_momentum: PerPoint<S, A> = core::array::from_fn(|a| of_rows.get(a).clone());
-            let of_residual = core::array::from_fn(|a| Array::from_fn(|c| rows[a][constraint_index::<S>(c)]));
-            let time = |point: usize| self.action.point_time(start.t, point);
-            let by_rows = (&of_momentum, &of_residual);
-            subtract_constraint_parameters(seeds, self.step, time, by_rows, &mut gradient.parameters);
-        }
+        self.add_start_curvature(seeds, &mut gradient.q, &of_rows.first);
+        let of_residual = core::array::from_fn(|a| Array::from_fn(|c| rows[a][constraint_index::<S>(c)]));
         for a in 0..A {
             *along.get_mut(a) = of_rows.get(a).clone();
         }
-        self.action.add_parameters(self.step, seeds, &along, gradient);
+        self.add_parameters(seeds, &along, &of_residual, gradient);
+    }
+
+    /// Adds to the derivative by `q₀` what the forces of the constraints there make of that by `p₀`.
+    pub(super) fn add_start_curvature(
+        &self,
+        seeds: &Seeds<S>,
+        by_position: &mut S::PerCoordinate<f64>,
+        by_momentum: &S::PerCoordinate<f64>,
+    ) {
+        if S::N_CONSTRAINTS > 0 {
+            let TakenStep { start, impulses, .. } = self.step;
+            let (t, q) = (Tangent::still(start.t), moving::<S>(&start.q, by_momentum));
+            ConstraintRates::<S>::new(&seeds.still, t, &q).add_pull(-1.0, &impulses[0], by_position);
+        }
+    }
+
+    /// Adds the derivatives by parameters and inputs: `along` has those by the momentum balances of the points before the last and by `p⁻`, `of_residual`
+    /// those by the constraints of the points after the first.
+    pub(super) fn add_parameters(
+        &self,
+        seeds: &Seeds<S>,
+        along: &Points<S, A>,
+        of_residual: &[S::PerConstraint<f64>; A],
+        gradient: &mut StateGradient<S>,
+    ) {
+        if S::N_CONSTRAINTS > 0 {
+            let of_momentum: PerPoint<S, A> = core::array::from_fn(|a| along.get(a).clone());
+            let time = |point: usize| self.action.point_time(self.step.start.t, point);
+            let by_rows = (&of_momentum, of_residual);
+            subtract_constraint_parameters(seeds, self.step, time, by_rows, &mut gradient.parameters);
+        }
+        self.action.add_parameters(self.step, seeds, along, gradient);
+    }
+
+    /// Goes back over the landing: adds to the derivatives by `q₁`, and returns those by `p⁻`.
+    pub(super) fn before_landing(
+        &self,
+        seeds: &Seeds<S>,
+        gradient: &mut StateGradient<S>,
+    ) -> S::PerCoordinate<f64> {
+        self.landing.backward(seeds, &self.removed, gradient)
     }
 }
 
@@ -226,19 +269,19 @@ pub(super) fn subtract_constraint_parameters<S: MechanicalSystem, const A: usize
     for point in (0..=A).filter(|&point| point > 0 || seeds.reach.jacobian) {
         let t = Tangent::still(time(point));
         let moved = |i: usize| if point == 0 { 0.0 } else { differences[point - 1][i] };
-        seeds.add_parameter_rates(gradient, |constants| {
-            let q = Array::from_fn(|i| Tangent::still(start.q[i] + moved(i)));
-            let rates = ConstraintRates::<S, _>::new(constants, t, &q);
-            let mut sum = Rate::ZERO;
-            if point < A && seeds.reach.jacobian {
-                sum = sum - rates.form(&impulses[point], &of_momentum[point]);
-            }
-            if point > 0 {
-                for c in 0..S::N_CONSTRAINTS {
-                    sum = sum - rates.residual[c].times(of_residual[point - 1][c]);
-                }
-            }
-            sum
-        });
+        let q = Array::from_fn(|i| Tangent::still(start.q[i] + moved(i)));
+        if point < A {
+            let follows = |reach: &Reach| reach.jacobian;
+            seeds.add_parameter_rates(gradient, follows, |constants| {
+                -ConstraintRates::<S, _>::new(constants, t, &q).form(&impulses[point], &of_momentum[point])
+            });
+        }
+        if point > 0 {
+            let follows = |reach: &Reach| reach.residuals;
+            seeds.add_parameter_rates(gradient, follows, |constants| {
+                let (residual, by) = (S::constraints(constants, t, &q), &of_residual[point - 1]);
+                (0..S::N_CONSTRAINTS).fold(Rate::ZERO, |sum, c| sum - residual[c].rate.times(by[c]))
+            });
+        }
     }
 }

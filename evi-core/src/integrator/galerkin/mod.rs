@@ -7,7 +7,10 @@ mod points;
 use core::fmt;
 
 use super::{Compensable, CompensableStep, OneStep, Scheme, StepError, Symmetric, Tally};
-use crate::mechanics::{Dropped, GalerkinAction, Lost, LostDigits, Mechanics, Points, RoundOff, State, Sum};
+use crate::array::Array;
+use crate::mechanics::{
+    ConstantLegendre, Dropped, GalerkinAction, Lost, LostDigits, Mechanics, Points, RoundOff, State, Sum,
+};
 use crate::memory::memory;
 use crate::newton::TARGET;
 use crate::scalar::InstructionSet;
@@ -157,9 +160,25 @@ impl<S: MechanicalSystem, F: NodalCurves<S>, const K: usize> GalerkinStep<S, F, 
         &self.action
     }
 
-    /// The points of the step from `start` that was taken last, where passes on a constant mass have found them.
-    pub(crate) fn points_found(&self, start: &State<S>) -> Option<Points<S, K>> {
-        self.passes.as_ref()?.points_found(start)
+    /// The Legendre transform of steps that are found by passes on a constant mass.
+    pub(crate) fn legendre(&self) -> Option<&ConstantLegendre<S>> {
+        self.passes.as_ref().map(LanePasses::legendre)
+    }
+
+    /// The points of the step from `start` to `end` that was taken last, and its `p⁻`; `None` if no step was taken.
+    pub(crate) fn found(
+        &self,
+        start: &State<S>,
+        end: &State<S>,
+    ) -> Option<(Points<S, K>, S::PerCoordinate<f64>)> {
+        let of_lanes =
+            self.passes.as_ref().and_then(|passes| passes.found(&self.action.mechanics, start, end));
+        of_lanes.or_else(|| {
+            let by_passes = self.points.as_ref().and_then(PointSteps::found);
+            let points = by_passes.or_else(|| self.newton.found())?;
+            let gain = self.action.momentum_gain(start, &points);
+            Some((points, Array::from_fn(|i| start.p[i] + gain[i])))
+        })
     }
 
     /// How its steps are solved: which iteration, in which vector instructions; to be printed.

@@ -24,6 +24,11 @@ impl<S: MechanicalSystem, const K: usize> NewtonSolve<S, K> {
         Self { extrapolation: Extrapolation::new(action), storage: NewtonStorage::new(action), past: None }
     }
 
+    /// The points of the step that was taken last, if it was by Newton's iteration.
+    pub(super) fn found(&self) -> Option<Points<S, K>> {
+        self.past.clone()
+    }
+
     /// Keeps the points of a step that was taken, or that the step was taken by other means.
     pub(super) fn remember(&mut self, points: Option<Points<S, K>>) {
         self.past = points;

@@ -7,7 +7,8 @@ use crate::array::Array;
 use crate::integrator::{StepError, Tally};
 use crate::linear::{Factorization, largest_magnitude};
 use crate::mechanics::{
-    FirstGuess, LaneEnd, LaneStep, Lost, Mechanics, Passes, Points, ProjectionError, RoundOff, State, Sum,
+    ConstantLegendre, FirstGuess, LaneEnd, LaneStep, Lost, Mechanics, Passes, Points, ProjectionError,
+    RoundOff, State, Sum,
 };
 use crate::memory::memory;
 use crate::scalar::{InstructionSet, Lanes};
@@ -59,9 +60,21 @@ impl<S: MechanicalSystem, const K: usize> LanePasses<S, K> {
         self.instructions
     }
 
-    /// The points of the step from `start` that was taken last, if it was by passes.
-    pub(super) fn points_found(&self, start: &State<S>) -> Option<Points<S, K>> {
-        (self.known > 0).then(|| self.step.points_found(start, self.h))
+    pub(super) const fn legendre(&self) -> &ConstantLegendre<S> {
+        &self.step.legendre
+    }
+
+    /// The points of the step from `start` to `end` that was taken last, if it was by passes, and its `p⁻`.
+    pub(super) fn found(
+        &self,
+        mechanics: &Mechanics<S>,
+        start: &State<S>,
+        end: &State<S>,
+    ) -> Option<(Points<S, K>, S::PerCoordinate<f64>)> {
+        (self.known > 0).then(|| {
+            let gain = self.step.momentum_gain(mechanics, (start, end.t), &end.q);
+            (self.step.points_found(start, self.h), Array::from_fn(|i| start.p[i] + gain[i]))
+        })
     }
 
     /// The end of the step without a past.

@@ -7,7 +7,7 @@ use crate::array::Array;
 use crate::integrator::{StepError, Tally};
 use crate::linear::unknowns;
 use crate::mechanics::{
-    Lost, Mechanics, NodeMotion, PointEnd, PointGuess, PointIteration, PointPasses, ProjectionError,
+    Lost, Mechanics, NodeMotion, PointEnd, PointGuess, PointIteration, PointPasses, Points, ProjectionError,
     RoundOff, State, Sum,
 };
 use crate::memory::memory;
@@ -39,6 +39,11 @@ impl<S: MechanicalSystem, const K: usize> PointSteps<S, K> {
 
     pub(super) const fn instruction_set(&self) -> InstructionSet {
         self.instructions
+    }
+
+    /// The points of the step that was taken last, if it was by passes.
+    pub(super) fn found(&self) -> Option<Points<S, K>> {
+        (self.known > 0).then(|| self.passes.points_found(self.h))
     }
 }
 

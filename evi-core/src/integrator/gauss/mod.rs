@@ -129,6 +129,16 @@ impl<S: MechanicalSystem, const K: usize> GaussStep<S, K> {
         if self.passes.is_some() { Iteration::Passes(self.instructions) } else { Iteration::Newton }
     }
 
+    /// The velocities at the nodes of the step that was taken last.
+    pub(crate) fn velocities_found(&self) -> [S::PerCoordinate<f64>; K] {
+        match &self.passes {
+            Some(passes) if self.known > 0 => {
+                core::array::from_fn(|node| Array::from_fn(|i| passes.velocities[i].to_array()[node]))
+            }
+            _ => self.newton.velocities(),
+        }
+    }
+
     #[inline]
     fn advance_with<R: RoundOff<S>>(
         &mut self,

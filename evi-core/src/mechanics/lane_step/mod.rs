@@ -14,6 +14,7 @@
 //!
 //! Impulses, and one rounded `h M⁻¹` for them and for `p₀`, leave nothing systematic of the rounding of tables: what one step is off by, another is not.
 
+mod back;
 mod end;
 mod first_guess;
 mod forces;
@@ -28,6 +29,7 @@ use crate::newton::{LinearProgress, NotConverged};
 use crate::scalar::{LaneOperation, Lanes};
 use crate::scheme::ImpulseTables;
 use crate::system::MechanicalSystem;
+pub(crate) use back::{Arrival, BackStep};
 pub(crate) use end::LaneEnd;
 pub(crate) use first_guess::FirstGuess;
 use gram::applied;
