@@ -90,14 +90,45 @@ impl<S: MechanicalSystem> ConstantLegendre<S> {
         jacobian: &S::PerJacobianEntry<f64>,
         tally: &mut impl Tally,
     ) -> Result<S::GramFactors, SingularMatrix> {
-        let directions = mechanics.constraint_directions(jacobian, &self.inverse_mass);
-        let matrix = mechanics.gram_matrix::<AsMass>(jacobian, &directions);
-        tally.see_matrix(|| gram_conditioning::<S>(&matrix));
+        let matrix = self.gram(mechanics, jacobian, tally);
+        let gram = S::GramFactors::factor_of_any_size(&matrix)?;
+        if gram.is_fallback() {
+            tally.count_fallback();
+        }
+        Ok(gram)
+    }
+
+    /// The same for a step that takes another way where products of masses leave the numbers.
+    ///
+    /// # Errors
+    /// As [`factor_gram`](Self::factor_gram), and there.
+    #[inline(always)]
+    pub(crate) fn factor_usual_gram(
+        &self,
+        mechanics: &Mechanics<S>,
+        jacobian: &S::PerJacobianEntry<f64>,
+        tally: &mut impl Tally,
+    ) -> Result<S::GramFactors, SingularMatrix> {
+        let matrix = self.gram(mechanics, jacobian, tally);
         let gram = S::GramFactors::factor(&matrix)?;
         if gram.is_fallback() {
             tally.count_fallback();
         }
         Ok(gram)
+    }
+
+    /// `G M⁻¹ Gᵀ`.
+    #[inline(always)]
+    fn gram(
+        &self,
+        mechanics: &Mechanics<S>,
+        jacobian: &S::PerJacobianEntry<f64>,
+        tally: &mut impl Tally,
+    ) -> Gram<S> {
+        let directions = mechanics.constraint_directions(jacobian, &self.inverse_mass);
+        let matrix = mechanics.gram_matrix::<AsMass>(jacobian, &directions);
+        tally.see_matrix(|| gram_conditioning::<S>(&matrix));
+        matrix
     }
 
     /// Removes from the `momentum` the impulse `Gᵀ N` that leaves the constraints, `G M⁻¹ Gᵀ N = G v + ∂φ/∂t`, with the

@@ -90,12 +90,15 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'_, S, F, R>
         tally: &mut impl Tally,
     ) -> Result<Landing<S, R::Sum>, StepError> {
         let mut impulse = begun.clone();
-        let scale = self.scale(&q, [expected, begun]);
-        let mut progress = Progress::after(relative_length::<S>(&previous, &scale));
+        let mut progress = if corrections == 0 {
+            Progress::default()
+        } else {
+            Progress::after(relative_length::<S>(&previous, &self.scale(&q, [expected, begun])))
+        };
         loop {
             let (residual, jacobian) = self.constraints_at(&q);
             let matrix = self.mechanics.gram_matrix::<F::Coupling>(&jacobian, &self.directions);
-            let gram = DriftGram::<S, F>::factor(&matrix).map_err(|matrix| {
+            let gram = DriftGram::<S, F>::factor_of_any_size(&matrix).map_err(|matrix| {
                 let failure = IterationFailure::Singular { correction: progress.corrections() + 1, matrix };
                 self.failed(failure, &residual, 0.0)
             })?;
