@@ -2,6 +2,7 @@
 //!
 //! Powers of two scale every number of a step exactly, and no bit changes: there is no constant with a unit in it.
 
+use evi_core::baseline::Rattle;
 use evi_core::prelude::*;
 use evi_examples::{DoublePendulum, StiffSpringPendulum};
 use evi_tests::largest_difference;
@@ -110,6 +111,27 @@ fn of_units_with_constraints() {
     check(|units| double_pendulum(units, Evi::midpoint(H / units.time)));
     check(|units| double_pendulum(units, Evi::midpoint(H / units.time).frequency(OMEGA * units.time)));
     check(|units| double_pendulum(units, Evi::simpson(H / units.time).frequency(OMEGA * units.time)));
+}
+
+/// Masses whose products are no numbers: `G M⁻¹ Gᵀ` is, its determinant is not.
+#[track_caller]
+fn check_extreme_masses(end: impl Fn(Units) -> Vec<f64>) {
+    let si = end(Units::SI);
+    let growth = growth(|g| end(Units { g, ..Units::SI }));
+    for mass in [1e-300, 1e-200, 1e-157, 1e-80, 1e80, 1e157, 1e200, 1e300] {
+        let units = Units::new(1.0, mass, 1.0);
+        let difference = largest_difference(&end(units), &si) / (f64::EPSILON * growth);
+        println!("{}: {mass:e} kg: {difference:.2} ε × growth", core::panic::Location::caller());
+        assert!(difference <= ROUND_OFF, "{difference:.1} ε × growth in units of {mass:e} kg");
+    }
+}
+
+#[test]
+fn of_masses_whose_products_are_no_numbers() {
+    check_extreme_masses(|units| double_pendulum(units, Evi::midpoint(H)));
+    check_extreme_masses(|units| double_pendulum(units, Evi::simpson(H).frequency(OMEGA)));
+    check_extreme_masses(|units| double_pendulum(units, Galerkin::<2>::new(H)));
+    check_extreme_masses(|units| double_pendulum(units, Rattle::new(H)));
 }
 
 #[test]

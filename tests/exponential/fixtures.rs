@@ -79,6 +79,20 @@ impl Bead {
     }
 }
 
+/// A bead in a round bowl with its lowest point at the origin: there every coordinate vanishes, the terms of the constraint do not.
+#[derive(MechanicalSystem, Clone, Copy, Debug)]
+#[evi(
+    coordinates(x, y),
+    kinetic = 0.5 * m * (der(x).powi(2) + der(y).powi(2)),
+    potential = m * g * y,
+    constraint(bowl: x.powi(2) + (y - l).powi(2) == l.powi(2)),
+)]
+pub(crate) struct Bowl {
+    pub(crate) m: f64,
+    pub(crate) l: f64,
+    pub(crate) g: f64,
+}
+
 /// Largest difference of a run from `motion`, a function of time, at every step up to `t_end`.
 #[track_caller]
 pub(crate) fn distance_from<S, F, const N: usize>(

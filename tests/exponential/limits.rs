@@ -1,12 +1,13 @@
 //! Frequencies that vanish, modes that grow, coordinates that nothing holds.
 
+use evi_core::baseline::Rattle;
 use evi_core::integrator::{OneStep, Statistics};
 use evi_core::prelude::*;
 use evi_core::scheme::growth_rate;
 use evi_examples::{DoublePendulum, FermiPastaUlam, GRAVITY, HarmonicOscillator, Start};
 use evi_tests::{largest_difference, observed_order};
 
-use super::fixtures::ThreeRods;
+use super::fixtures::{Bowl, ThreeRods};
 
 const UNIT: DoublePendulum = DoublePendulum::UNIT;
 
@@ -238,4 +239,27 @@ fn a_step_tells_how_near_its_modes_are_to_resonance() {
     assert_eq!(condition(1.0), 1.0);
     assert!((condition(3.1) - 1.0 / 3.1_f64.sin()).abs() < 1e-10);
     assert!((condition(6.2) - 1.0 / 6.2_f64.sin().abs()).abs() < 1e-10);
+}
+
+/// The round-off of the constraint, `ε l²`, is no part of coordinates that vanish: nothing that a step knows is as large.
+#[track_caller]
+fn check_rest_at_the_origin<F: Scheme<Bowl>>(step_sizes: &[f64], scheme: impl Fn(f64) -> F) {
+    for l in [0.7, 0.37, 1.3, 0.9] {
+        let system = Bowl { m: 1.3, l, g: GRAVITY };
+        for &h in step_sizes {
+            let mut run = Simulation::new(system, scheme(h)).start([0.0; 2], [0.0; 2]).expect("a start");
+            for _ in 0..1000 {
+                let [x, y] = *run.advance().unwrap_or_else(|error| panic!("l = {l}, h = {h}: {error}")).q();
+                // Roundings of the constraint: `ε l² / 2l`.
+                assert!(x.abs().max(y.abs()) <= f64::EPSILON, "l = {l}, h = {h}: {x:e}, {y:e}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_bead_at_rest_at_the_origin_stays_there() {
+    check_rest_at_the_origin(&[1e-1, 1e-2, 1e-3, 1e-4], |h| Evi::trapezoid(h).linearised_at([0.0, 0.0]));
+    // Judged against the way of a step, of which the round-off is too large a part in shorter ones.
+    check_rest_at_the_origin(&[1e-1, 1e-2], Rattle::new);
 }

@@ -40,7 +40,14 @@ fn powers_of_four_change_no_bit() {
 #[test]
 fn other_units_change_round_off_alone() {
     let one = pendulum(1.0, 1.0, 1.0);
-    for (length, mass, time) in [(1e-6, 1.0, 1.0), (1.0, 1e6, 1.0), (1.0, 1.0, 1e-3), (300.0, 1e-5, 7.0)] {
+    for (length, mass, time) in [
+        (1e-6, 1.0, 1.0),
+        (1.0, 1e6, 1.0),
+        (1.0, 1.0, 1e-3),
+        (300.0, 1e-5, 7.0),
+        (1.0, 1e300, 1.0),
+        (1.0, 1e-300, 1.0),
+    ] {
         let difference = largest_difference(&pendulum(length, mass, time), &one);
         println!("{difference:.1e}");
         // Round-off of 100 steps.

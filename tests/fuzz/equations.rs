@@ -7,6 +7,7 @@ use evi_core::comparison::Solver;
 use evi_core::generic::GenericSystem;
 use num_dual::Dual64;
 
+use crate::inner_points::{InnerPoints, Step, gradient};
 use crate::largest;
 
 /// A state.
@@ -33,6 +34,19 @@ impl Snapshot {
 
     /// The states beside this one, for velocities of this size.
     fn displaced(&self, speed: f64) -> Vec<Self> {
+        let mut displaced = self.displaced_positions();
+        for i in 0..self.q.len() {
+            for sign in [-1.0, 1.0] {
+                let mut faster = self.clone();
+                faster.v[i] += sign * ROUNDINGS * f64::EPSILON * speed;
+                displaced.push(faster);
+            }
+        }
+        displaced
+    }
+
+    /// Those at other places, and later.
+    fn displaced_positions(&self) -> Vec<Self> {
         let by = |size: f64| ROUNDINGS * f64::EPSILON * size;
         let later = Self { t: self.t * (1.0 + by(1.0)), ..self.clone() };
         let mut displaced = vec![later];
@@ -41,9 +55,6 @@ impl Snapshot {
                 let mut moved = self.clone();
                 moved.q[i] += sign * by(largest(&self.q));
                 displaced.push(moved);
-                let mut faster = self.clone();
-                faster.v[i] += sign * by(speed);
-                displaced.push(faster);
             }
         }
         displaced
@@ -83,58 +94,124 @@ pub(crate) fn hidden_constraints<S: GenericSystem>(system: &S, end: &Snapshot, s
     in_roundings(&at(end), &end.displaced(speed).iter().map(at).collect::<Vec<_>>(), 0.0)
 }
 
-/// How far a step of the midpoint rule is beside `p₀ + D₁L_d ∈ range G₀ᵀ` and `p₁ − D₂L_d ∈ range G₁ᵀ`, `L_d = h L` at the midpoint.
-pub(crate) fn midpoint_action<S: GenericSystem>(
+/// What a step is a stationary point of: with forces, what their virtual work is balanced by.
+#[derive(Clone, Debug)]
+pub(crate) enum Equations {
+    /// `h L` at the midpoint.
+    Midpoint,
+    /// The action of a polynomial through points that are not stored.
+    Points(InnerPoints),
+}
+
+impl Equations {
+    /// How far a step is beside `p₀ + D₁L_d ∈ range G₀ᵀ` and `p₁ − D₂L_d ∈ range G₁ᵀ`; `None` where the points between its ends are not found.
+    pub(crate) fn residual<S: GenericSystem>(
+        &self,
+        system: &S,
+        (h, inputs): (f64, &[f64]),
+        before: &Snapshot,
+        after: &Snapshot,
+    ) -> Option<f64> {
+        match self {
+            Self::Midpoint => {
+                let momenta =
+                    |before: &Snapshot, after: &Snapshot| Some(of_midpoint(system, h, inputs, before, after));
+                residual(system, before, after, momenta)
+            }
+            Self::Points(points) => {
+                if !resolves(system, (h, inputs), before, after) {
+                    return None;
+                }
+                let found = points.found(system, ends(h, inputs, before, after))?;
+                residual(system, before, after, |before, after| {
+                    let step = ends(h, inputs, before, after);
+                    let found = points.found_near(system, step, &found)?;
+                    Some(points.momenta(system, step, &found))
+                })
+            }
+        }
+    }
+}
+
+/// Whether a step is short beside the motion. Between the ends of another one several curves may pass, and the ends do not tell which one it has found.
+///
+/// Over the way of the step the forces change the momentum by less than itself: `h² ∂F/∂q < m`.
+fn resolves<S: GenericSystem>(
     system: &S,
-    h: f64,
+    (h, inputs): (f64, &[f64]),
     before: &Snapshot,
     after: &Snapshot,
-) -> f64 {
-    [(Slot::Start, before), (Slot::End, after)]
-        .map(|(slot, end)| {
-            let normals = normals(system, end);
-            let residual = |before: &Snapshot, after: &Snapshot| {
-                let sign = if slot == Slot::Start { 1.0 } else { -1.0 };
-                let derivative = derivative(system, h, before, after, slot);
-                end.p.iter().zip(derivative).map(|(p, derivative)| p + sign * derivative).collect::<Vec<_>>()
-            };
-            let whole = residual(before, after);
-            let here = tangential(whole.clone(), &normals);
-            let displaced_starts = before.displaced(0.0).into_iter().map(|before| residual(&before, after));
-            let displaced_ends = after.displaced(0.0).into_iter().map(|after| residual(before, &after));
-            let displaced = displaced_starts.chain(displaced_ends);
-            let displaced: Vec<Vec<f64>> = displaced.map(|there| tangential(there, &normals)).collect();
-            in_roundings(&here, &displaced, f64::EPSILON * largest(&whole).max(largest(&end.p)))
+) -> bool {
+    /// What is random has lengths and times of 1.
+    const LONGEST_TIME: f64 = 0.2;
+    const LONGEST_WAY: f64 = 0.5;
+    const PARTS: f64 = 64.0;
+    let chord: Vec<f64> = before.q.iter().zip(&after.q).map(|(start, end)| end - start).collect();
+    let way = largest(&chord).max(h.abs() * largest(&before.v).max(largest(&after.v)));
+    // Written so that a NaN is long.
+    let is_short = h.abs() <= LONGEST_TIME && way <= LONGEST_WAY;
+    let most = largest(&before.p).max(largest(&after.p)) / PARTS;
+    let changes_slowly = |part: f64| {
+        let along = |from: &[f64], to: &[f64]| -> Vec<f64> {
+            from.iter().zip(to).map(|(from, to)| from + part * (to - from)).collect()
+        };
+        let (mut q, v, t) = (along(&before.q, &after.q), along(&before.v, &after.v), before.t + part * h);
+        let [here, _] = gradient(system, t, &q, &v, inputs);
+        (0..q.len()).all(|i| {
+            let at = q[i];
+            q[i] = at + way / PARTS;
+            let [there, _] = gradient(system, t, &q, &v, inputs);
+            q[i] = at;
+            let change: Vec<f64> = here.iter().zip(&there).map(|(here, there)| h * (there - here)).collect();
+            largest(&change) <= most
         })
-        .into_iter()
-        .fold(0.0, f64::max)
+    };
+    is_short && [0.0, 0.25, 0.5, 0.75, 1.0].into_iter().all(changes_slowly)
 }
 
-#[derive(Clone, Copy, PartialEq)]
-enum Slot {
-    Start,
-    End,
+fn ends<'a>(h: f64, inputs: &'a [f64], before: &'a Snapshot, after: &'a Snapshot) -> Step<'a> {
+    Step { t: before.t, h, q: [&before.q, &after.q], v: [&before.v, &after.v], inputs }
 }
 
-fn derivative<S: GenericSystem>(
+/// The larger of both, where `momenta` are `[−D₁L_d, D₂L_d]` of a step.
+fn residual<S: GenericSystem>(
     system: &S,
-    h: f64,
     before: &Snapshot,
     after: &Snapshot,
-    slot: Slot,
-) -> Vec<f64> {
+    momenta: impl Fn(&Snapshot, &Snapshot) -> Option<[Vec<f64>; 2]>,
+) -> Option<f64> {
+    let here = momenta(before, after)?;
+    let displaced_starts = before.displaced_positions().into_iter().map(|before| momenta(&before, after));
+    let displaced_ends = after.displaced_positions().into_iter().map(|after| momenta(before, &after));
+    let displaced = displaced_starts.chain(displaced_ends).collect::<Option<Vec<_>>>()?;
+    let of_end = |(slot, end): (usize, &Snapshot)| {
+        let normals = normals(system, end);
+        let left = |momenta: &[Vec<f64>; 2]| -> Vec<f64> {
+            end.p.iter().zip(&momenta[slot]).map(|(p, momentum)| p - momentum).collect()
+        };
+        let whole = left(&here);
+        let in_any_case = f64::EPSILON * largest(&whole).max(largest(&end.p));
+        let displaced: Vec<Vec<f64>> =
+            displaced.iter().map(|there| tangential(left(there), &normals)).collect();
+        in_roundings(&tangential(whole, &normals), &displaced, in_any_case)
+    };
+    Some([(0, before), (1, after)].into_iter().map(of_end).fold(0.0, f64::max))
+}
+
+/// The momenta of `h L` at the midpoint.
+fn of_midpoint<S: GenericSystem>(
+    system: &S,
+    h: f64,
+    inputs: &[f64],
+    before: &Snapshot,
+    after: &Snapshot,
+) -> [Vec<f64>; 2] {
     let pairs = || before.q.iter().zip(&after.q);
-    let mut q: Vec<Dual64> = pairs().map(|(a, b)| Dual64::from_re(0.5 * a + 0.5 * b)).collect();
-    let mut v: Vec<Dual64> = pairs().map(|(a, b)| Dual64::from_re((b - a) / h)).collect();
-    let t = Dual64::from_re(before.t + 0.5 * h);
-    (0..q.len())
-        .map(|i| {
-            (q[i].eps, v[i].eps) = (0.5, if slot == Slot::Start { -1.0 / h } else { 1.0 / h });
-            let along = system.lagrangian(t, &q, &v).eps;
-            (q[i].eps, v[i].eps) = (0.0, 0.0);
-            h * along
-        })
-        .collect()
+    let q: Vec<f64> = pairs().map(|(a, b)| 0.5 * a + 0.5 * b).collect();
+    let v: Vec<f64> = pairs().map(|(a, b)| (b - a) / h).collect();
+    let [force, momentum] = gradient(system, before.t + 0.5 * h, &q, &v, inputs);
+    let with = |sign: f64| momentum.iter().zip(&force).map(|(p, f)| p + sign * 0.5 * h * f).collect();
+    [with(-1.0), with(1.0)]
 }
 
 /// An orthonormal basis of the gradients of the constraints.

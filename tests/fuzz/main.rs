@@ -6,6 +6,8 @@
 
 mod equations;
 mod expressions;
+#[path = "../../benches/stability/inner_points.rs"]
+mod inner_points;
 mod numbers;
 #[path = "../random_choices/mod.rs"]
 mod random_choices;
@@ -38,6 +40,8 @@ struct Outcome {
     hidden_constraints: f64,
     /// Those of the equations of the action, in the same units, where they are looked at.
     action: f64,
+    /// Of so many steps.
+    actions: usize,
 }
 
 impl Outcome {
@@ -49,6 +53,7 @@ impl Outcome {
             constraints: self.constraints.max(other.constraints),
             hidden_constraints: self.hidden_constraints.max(other.hidden_constraints),
             action: self.action.max(other.action),
+            actions: self.actions + other.actions,
         }
     }
 }
@@ -234,13 +239,14 @@ fn summary(kind: &str, outcomes: &[Outcome]) {
     let all = outcomes.iter().copied().fold(Outcome::default(), Outcome::or);
     println!(
         "{kind}: {} cases, {started} started, {} steps accepted, {} refused; residuals in round-offs: constraints {:.1}, \
-         hidden constraints {:.1}, action {:.1}",
+         hidden constraints {:.1}, action {:.1} of {} steps",
         outcomes.len(),
         all.accepted,
         all.refused,
         all.constraints,
         all.hidden_constraints,
-        all.action
+        all.action,
+        all.actions
     );
     assert!(all.accepted > outcomes.len() / 10, "too few steps are accepted");
     assert!(all.refused > 0 || started < outcomes.len(), "neither a start nor a step is refused");

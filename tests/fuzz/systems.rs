@@ -3,11 +3,13 @@
 use std::fmt::Debug;
 
 use evi_core::comparison::Solver;
-use evi_core::generic::{GenericEvi, GenericGalerkin, GenericScheme, GenericSystem};
+use evi_core::generic::{GenericEvi, GenericGalerkin, GenericRun, GenericScheme, GenericSystem};
+use evi_core::integrator::Tally;
 use evi_core::prelude::*;
 
-use crate::equations::{Snapshot, constraints, hidden_constraints, midpoint_action};
+use crate::equations::{Equations, Snapshot, constraints, hidden_constraints};
 use crate::expressions::RandomSystem;
+use crate::inner_points::InnerPoints;
 use crate::numbers::{number, parameter, step_size};
 use crate::random_choices::{Choices, check};
 use crate::{Outcome, ROUND_OFFS, STACK, largest, summary};
@@ -23,37 +25,70 @@ mod written {
 }
 
 /// Which equations of a step are looked at.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone)]
 enum Action {
-    /// Those of the midpoint rule, and the constraints at the end.
-    Midpoint,
-    /// The constraints at the end alone: the points between are not known.
+    /// Those of its action, and the constraints at the end.
+    Of(Equations),
+    /// The constraints at the end alone: the states between the parts of the step are not known.
     Unknown,
     /// None.
     Lost,
 }
 
 impl Action {
+    const MIDPOINT: Self = Self::Of(Equations::Midpoint);
+
+    /// Of `Galerkin` with so many intervals.
+    fn galerkin(intervals: usize) -> Self {
+        Self::Of(Equations::Points(InnerPoints::lobatto(intervals)))
+    }
+
+    /// Of `Gauss` with so many nodes.
+    fn gauss(nodes: usize) -> Self {
+        Self::Of(Equations::Points(InnerPoints::gauss(nodes)))
+    }
+
     /// On curves of this frequency: a phase of 100 has lost its digits.
     fn on_curves(h: f64, frequency: f64) -> Self {
         if (h * frequency).abs() < 100.0 { Self::Unknown } else { Self::Lost }
     }
 }
 
+/// A run whose inputs change from step to step.
+trait Driven: Solver {
+    fn inputs_mut(&mut self) -> &mut [f64];
+}
+
+impl<S: GenericSystem> Driven for GenericRun<S> {
+    fn inputs_mut(&mut self) -> &mut [f64] {
+        self.inputs_mut()
+    }
+}
+
+impl<S: MechanicalSystem, M: OneStep<S>, T: Tally> Driven for Run<S, M, T> {
+    fn inputs_mut(&mut self) -> &mut [f64] {
+        self.inputs_mut().as_mut()
+    }
+}
+
 /// States of this size are finite, and nothing else is asked of them.
 const LARGEST_JUDGED: f64 = 1e6;
+/// Configurations that are smaller, but not zero, are less than the round-off of the ways that forces and constraints make of opposite sign.
+const SMALLEST_JUDGED: f64 = 1e-12;
 
 /// A few steps of size `h` from where the solver stands; the terms of the constraints are of the size of `terms`.
 fn followed<S: GenericSystem>(
     system: &S,
-    solver: &mut dyn Solver,
+    solver: &mut dyn Driven,
     (h, terms): (f64, f64),
-    action: Action,
+    action: &Action,
     choices: &mut Choices,
 ) -> Result<Outcome, String> {
     let mut outcome = Outcome { is_started: true, ..Outcome::default() };
     let mut speed = largest(solver.v());
     for _ in 0..=choices.below(4) {
+        solver.inputs_mut().iter_mut().for_each(|input| *input = number(choices));
+        let inputs = solver.inputs_mut().to_vec();
         let before = Snapshot::of(solver);
         let taken = solver.steps();
         // Momenta are differences of positions over `h`, and velocities what is left of them on the constraints.
@@ -75,19 +110,24 @@ fn followed<S: GenericSystem>(
         let is_one_step = solver.steps() == taken + 1 && (after.t - before.t - h).abs() <= 1e-6 * h.abs();
         outcome.accepted += 1;
         // Sines and powers of larger numbers have hardly a digit left.
-        let has_digits = [&before, &after].iter().all(|at| largest(&at.q).max(at.t.abs()) < LARGEST_JUDGED);
-        if !is_one_step || !has_digits || action == Action::Lost {
+        let has_digits = |state: &Snapshot| {
+            let size = largest(&state.q);
+            size.max(state.t.abs()) < LARGEST_JUDGED && (size == 0.0 || size > SMALLEST_JUDGED)
+        };
+        let has_digits = has_digits(&before) && has_digits(&after);
+        if !is_one_step || !has_digits || matches!(action, Action::Lost) {
             continue;
         }
-        let seen = Outcome {
+        let mut seen = Outcome {
             constraints: constraints(system, &after, terms),
             hidden_constraints: hidden_constraints(system, &after, speed.max(largest(&after.v))),
-            action: match action {
-                Action::Midpoint => midpoint_action(system, h, &before, &after),
-                Action::Unknown | Action::Lost => 0.0,
-            },
             ..Outcome::default()
         };
+        if let Action::Of(equations) = action
+            && let Some(residual) = equations.residual(system, (h, &inputs), &before, &after)
+        {
+            (seen.action, seen.actions) = (residual, 1);
+        }
         outcome = outcome.or(seen);
         let are_kept =
             [seen.constraints, seen.hidden_constraints, seen.action].iter().all(|x| *x <= ROUND_OFFS);
@@ -107,7 +147,7 @@ fn of_data(choices: &mut Choices) -> Result<Outcome, String> {
     let system = system.through(t, &q);
     let start = (t, &q[..], &v[..]);
     match choices.below(6) {
-        0..=2 => data_steps(&system, GenericEvi::midpoint(h), start, Action::Midpoint, choices),
+        0..=2 => data_steps(&system, GenericEvi::midpoint(h), start, Action::MIDPOINT, choices),
         3 => {
             let scheme = GenericEvi::simpson(h).frequency(frequency);
             data_steps(&system, scheme, start, Action::on_curves(h, frequency), choices)
@@ -120,8 +160,9 @@ fn of_data(choices: &mut Choices) -> Result<Outcome, String> {
             choices,
         ),
         _ => {
-            let scheme = GenericGalerkin::new(1 + choices.below(4), h);
-            data_steps(&system, scheme, start, Action::Unknown, choices)
+            let intervals = 1 + choices.below(4);
+            let scheme = GenericGalerkin::new(intervals, h);
+            data_steps(&system, scheme, start, Action::galerkin(intervals), choices)
         }
     }
 }
@@ -135,13 +176,22 @@ fn data_steps(
 ) -> Result<Outcome, String> {
     let h = scheme.step_size();
     let Ok(mut run) = scheme.start_projected(system.clone(), t, q, v) else { return Ok(Outcome::default()) };
-    followed(system, &mut run, (h, system.largest_level()), action, choices)
+    followed(system, &mut run, (h, system.largest_level()), &action, choices)
         .map_err(|error| format!("{system:?} by {scheme:?} from {q:?}, {v:?} at {t:?}: {error}"))
+}
+
+/// The equations of the action of every third step are looked at.
+#[track_caller]
+fn are_looked_into(outcomes: &[Outcome], kind: &str) {
+    summary(kind, outcomes);
+    let [accepted, actions] = [|outcome: &Outcome| outcome.accepted, |outcome: &Outcome| outcome.actions]
+        .map(|of| outcomes.iter().map(of).sum::<usize>());
+    assert!(3 * actions > accepted, "of {accepted} steps only {actions} are looked into");
 }
 
 #[test]
 fn systems_that_are_data() {
-    summary("systems as data", &check(4000, STACK, of_data));
+    are_looked_into(&check(4000, STACK, of_data), "systems as data");
 }
 
 /// A few steps of a system that is written, by a scheme of every kind.
@@ -157,13 +207,13 @@ where
     let start = (t, q, v);
     let midpoint = Evi::midpoint(h);
     match choices.below(7) {
-        0 | 1 => written_steps(system, midpoint, start, Action::Midpoint, choices),
+        0 | 1 => written_steps(system, midpoint, start, Action::MIDPOINT, choices),
         2 => {
             let scheme = Evi::simpson(h).frequency(frequency);
             written_steps(system, scheme, start, Action::on_curves(h, frequency), choices)
         }
-        3 | 4 => written_steps(system, Galerkin::<2>::new(h), start, Action::Unknown, choices),
-        5 => written_steps(system, Gauss::<2>::new(h), start, Action::Unknown, choices),
+        3 | 4 => written_steps(system, Galerkin::<2>::new(h), start, Action::galerkin(2), choices),
+        5 => written_steps(system, Gauss::<2>::new(h), start, Action::gauss(2), choices),
         _ => {
             let composed = midpoint.composed(Composition::triple_jump_4());
             written_steps(system, composed, start, Action::Unknown, choices)
@@ -186,10 +236,10 @@ where
     let start = Simulation::new(system.clone(), scheme).start_projected(t, q, v);
     let Ok(mut run) = start else { return Ok(Outcome::default()) };
     let h = run.map().h();
-    followed(system, &mut run, (h, 1.0), action, choices).map_err(|error| format!("{description}: {error}"))
+    followed(system, &mut run, (h, 1.0), &action, choices).map_err(|error| format!("{description}: {error}"))
 }
 
 #[test]
 fn systems_that_are_written() {
-    summary("systems as written", &check(3000, STACK, written::case));
+    are_looked_into(&check(3000, STACK, written::case), "systems as written");
 }

@@ -133,7 +133,7 @@ pub(crate) fn random_system(name: &str, seed: u64) -> String {
 }
 
 /// A struct `name` whose structure depends on the seed: two or three coordinates, a mass that is constant, coupled or varies, fewer constraints than
-/// coordinates, time or none.
+/// coordinates, time or none, and of every third seed forces, with an input, a dissipation and the time.
 #[allow(dead_code, reason = "the tests of the compiler take no steps")]
 pub(crate) fn stepped_system(name: &str, seed: u64) -> String {
     let mut generator = Generator::new(seed);
@@ -166,6 +166,21 @@ pub(crate) fn stepped_system(name: &str, seed: u64) -> String {
             )
         })
         .collect();
+    let forces = if seed % 3 == 1 {
+        let velocities = ["der(x)", "der(y)"];
+        let known: Vec<&str> = positions.iter().chain(&velocities).chain(&["t", "drive"]).copied().collect();
+        format!(
+            "dissipation = 0.5 * a * der(x).powi(2) * (1.0 + ({}).sin().powi(2)) + 0.1 * b * der(y).cosh(),
+            input(drive),
+            force(x: {}),
+            force(y: drive * ({}).cos()),",
+            generator.expression(&positions, 1),
+            generator.expression(&known, 2),
+            generator.expression(&positions, 1),
+        )
+    } else {
+        String::new()
+    };
     format!(
         "#[derive(MechanicalSystem, Clone, Debug)]
         #[evi(
@@ -173,6 +188,7 @@ pub(crate) fn stepped_system(name: &str, seed: u64) -> String {
             kinetic = {kinetic},
             potential = {potential},
             {constraints}
+            {forces}
         )]
         pub struct {name} {{ pub a: f64, pub b: f64 }}",
         names = coordinates[..n].join(", "),

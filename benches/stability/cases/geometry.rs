@@ -1,8 +1,9 @@
 //! Case 5: singular configurations, and constraints that depend on each other.
 
+use std::f64::consts::PI;
 use std::sync::Arc;
 
-use evi_examples::{FourBar, GRAVITY, StiffSpringPendulum};
+use evi_examples::{DoublePendulum, FourBar, GRAVITY, SliderCrank, Start, StiffSpringPendulum};
 
 use crate::methods::{on_constraints, on_constraints_of_rank, without_constraints};
 use crate::observation::{Observation, observe};
@@ -12,7 +13,7 @@ use crate::specimen::Experiment;
 use crate::theory::{Figure, Theory};
 use crate::verdict::Kind;
 
-pub(crate) const SUMMARY: &str = "linkages through and at the line, a direction of length zero, constraints that are nearly or fully dependent";
+pub(crate) const SUMMARY: &str = "linkages and chains through and at the line, a direction of length zero, constraints that are nearly or fully dependent";
 
 const CASE: &str = "geometry";
 /// Singular values below this part of the largest are round-off of the constraints.
@@ -22,6 +23,11 @@ pub(crate) fn rows(effort: Effort) -> Vec<Planned> {
     let mut rows = Vec::new();
     for angle in effort.of(&[1.0, 1e-3, 1e-6, 1e-9, 0.0]) {
         rows.extend(linkage(effort, angle));
+    }
+    rows.extend(stretched(effort));
+    rows.extend(at_dead_centres(effort));
+    for angle in effort.of(&[1.0, 1e-3, 1e-6, 1e-9, 0.0]) {
+        rows.extend(rod_on_crank(effort, angle));
     }
     for alpha in effort.of(&[1.0, 1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 0.0]) {
         rows.extend(almost_twice(effort, alpha));
@@ -65,6 +71,62 @@ fn linkage(effort: Effort, angle: f64) -> Vec<Planned> {
         // Of a parallelogram the coupler stays level.
         let tilt = seen.end.as_ref().map_or(f64::NAN, |end| (end.q[3] - end.q[1]).abs());
         vec![Figure::seen("tilt of the coupler at the end", tilt)]
+    })
+    .rows()
+}
+
+/// An open chain in a line, stretched and folded, from rest and turning as a whole: its constraints are independent there as anywhere.
+fn stretched(effort: Effort) -> Vec<Planned> {
+    const SYSTEM: DoublePendulum = DoublePendulum { m1: 1.0, m2: 0.5, l1: 1.0, l2: 0.8, g: GRAVITY };
+    let exchanged = GRAVITY * (SYSTEM.m1 * SYSTEM.l1 + SYSTEM.m2 * (SYSTEM.l1 + SYSTEM.l2));
+    let turning = |Start { q, .. }: Start<4>, rate: f64| Start {
+        q,
+        v: [-rate * q[1], rate * q[0], -rate * q[3], rate * q[2]],
+    };
+    let folded = SYSTEM.at_angles(0.5, 0.5 + PI);
+    let starts = [
+        ("rods stretched, at rest", SYSTEM.horizontal()),
+        ("rods stretched, turning", turning(SYSTEM.horizontal(), 6.0)),
+        ("rods folded, at rest", folded),
+        ("rods folded, turning", turning(folded, 6.0)),
+    ];
+    let trial = |(name, Start { q, v }): (&str, Start<4>)| {
+        let experiment = Experiment::new(SYSTEM, q, v, exchanged, on_constraints);
+        Trial::new(CASE, name, experiment, effort.course(0.01, 500, 2.7)).rows()
+    };
+    effort.of(&starts).into_iter().flat_map(trial).collect()
+}
+
+/// Crank and rod in a line, six times: the slider stops there, the constraints are independent, for the rod is longer than the crank.
+fn at_dead_centres(effort: Effort) -> Vec<Planned> {
+    let system = SliderCrank::STANDARD;
+    let Start { q, v } = system.stretched_out(15.0);
+    let exchanged = system.g * system.r * (system.m_crank + system.m_rod);
+    let experiment = Experiment::new(system, q, v, exchanged, on_constraints).reaching(20.0);
+    Trial::new(CASE, "slider-crank through its dead centres", experiment, effort.course(0.005, 400, 0.7))
+        .rows()
+}
+
+/// A rod as long as its crank: where it lies on the crank, the slider at the pivot, it may stay there and turn with it. It starts so many radians before.
+fn rod_on_crank(effort: Effort, angle: f64) -> Vec<Planned> {
+    const RATE: f64 = 6.0;
+    let system = SliderCrank { l: SliderCrank::STANDARD.r, ..SliderCrank::STANDARD };
+    let (sine, cosine) = angle.sin_cos();
+    // The crank so far from upright.
+    let crank = 0.5 * PI - angle;
+    let q = [crank, -crank, 2.0 * system.r * sine];
+    let v = [RATE, -RATE, -2.0 * system.r * RATE * cosine];
+    let exchanged = system.g * system.r * (system.m_crank + system.m_rod);
+    let experiment = Experiment::new(system, q, v, exchanged, on_constraints).reaching(40.0);
+    Trial::new(
+        CASE,
+        format!("rod {angle:.0e} rad before it lies on its crank"),
+        experiment,
+        effort.course(0.01, 500, 1.0),
+    )
+    .measuring(|_, seen| {
+        let apart = seen.end.as_ref().map_or(f64::NAN, |end| (end.q[0] + end.q[1]).abs());
+        vec![Figure::seen("rod beside the mirror image of the crank at the end", apart)]
     })
     .rows()
 }

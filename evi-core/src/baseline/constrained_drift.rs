@@ -136,6 +136,8 @@ impl<S: MechanicalSystem> ConstrainedDrift<S> {
         let pulled = |impulse: &S::PerConstraint<f64>, i: usize| -> f64 {
             (0..S::N_CONSTRAINTS).map(|c| directions[c][i] * impulse[c]).sum()
         };
+        // Of a scene at rest at the origin the way that it would go without its constraints is all that there is.
+        let way = largest_magnitude(v.as_ref().iter().map(|v| h * v));
         let mut v: S::PerCoordinate<f64> = Array::from_fn(|i| v[i] - pulled(&total, i));
         let mut q: S::PerCoordinate<f64> = landed(&v);
         let mut constraint_residual = 0.0;
@@ -143,8 +145,10 @@ impl<S: MechanicalSystem> ConstrainedDrift<S> {
         let iteration = newton::iterate(|correction| {
             let (residual, jacobian) = S::constraint_derivatives(constants, t, &q);
             constraint_residual = largest_magnitude(residual.as_ref().iter().copied());
-            let gram = S::GramFactors::factor(&self.mechanics.gram_matrix::<AsScene>(&jacobian, &directions))
-                .map_err(|matrix| IterationFailure::Singular { correction, matrix })?;
+            let gram = S::GramFactors::factor_of_any_size(
+                &self.mechanics.gram_matrix::<AsScene>(&jacobian, &directions),
+            )
+            .map_err(|matrix| IterationFailure::Singular { correction, matrix })?;
             smallest_pivot_ratio = smallest_pivot_ratio.min(gram.pivot_ratio());
             if gram.is_fallback() {
                 tally.count_fallback();
@@ -160,7 +164,7 @@ impl<S: MechanicalSystem> ConstrainedDrift<S> {
             }
             q = landed(&v);
             let length = largest_magnitude(change.as_ref().iter().map(|change| h * change));
-            Ok(relative(length, largest_magnitude(q.as_ref().iter().copied())))
+            Ok(relative(length, largest_magnitude(q.as_ref().iter().copied()).max(way)))
         });
         match iteration {
             Ok(Converged { corrections }) => {

@@ -94,7 +94,8 @@ impl<S: MechanicalSystem> RattleStep<S> {
         let (_, jacobian) = S::constraint_derivatives(&mechanics.constants, t, q);
         let directions = self.drift.directions(&jacobian);
         let mut impulse = mechanics.constraint_rate(&jacobian, v);
-        let gram = S::GramFactors::factor(&mechanics.gram_matrix::<AsScene>(&jacobian, &directions))?;
+        let gram =
+            S::GramFactors::factor_of_any_size(&mechanics.gram_matrix::<AsScene>(&jacobian, &directions))?;
         if gram.is_fallback() {
             tally.count_fallback();
         }

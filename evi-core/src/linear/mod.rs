@@ -47,6 +47,16 @@ pub trait Factorization<V, M>: Sized {
     /// [`SingularMatrix`] when the smallest pivot is lost in the round-off of the largest.
     fn factor(matrix: &M) -> Result<Self, SingularMatrix>;
 
+    /// The same for a matrix whose entries are so large or small that products of them may leave the numbers. Closed forms, which have such products,
+    /// find them in another unit; where nothing waits for the factors, this is the one to call.
+    ///
+    /// # Errors
+    /// As [`factor`](Self::factor).
+    #[inline]
+    fn factor_of_any_size(matrix: &M) -> Result<Self, SingularMatrix> {
+        Self::factor(matrix)
+    }
+
     /// Factors a matrix whose rows and columns have different units, if that needs no comparison of pivots with each other.
     #[inline]
     fn factor_unscaled(_matrix: &M) -> Option<Self> {

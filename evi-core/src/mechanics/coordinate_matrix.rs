@@ -30,7 +30,7 @@ impl<S: MechanicalSystem, C: Coupling<S>> CoordinateMatrix<S, C> {
     /// # Errors
     /// [`SingularMatrix`] if it has none.
     pub(crate) fn inverse_of(rows: &Rows<S>) -> Result<Self, SingularMatrix> {
-        let factors = S::MassFactors::factor(rows)?;
+        let factors = S::MassFactors::factor_of_any_size(rows)?;
         let columns: Rows<S> = Array::from_fn(|col| {
             let mut column = S::PerCoordinate::<f64>::from_fn(|row| if row == col { 1.0 } else { 0.0 });
             factors.solve(&mut column);

@@ -43,8 +43,9 @@ impl<S: MechanicalSystem> ConstantLegendre<S> {
         let LagrangianGradient { momentum, .. } =
             S::lagrangian_gradient(&mechanics.constants, 0.0, &at_rest, &at_rest);
         let inverse_mass = CoordinateMatrix::inverse_of(&mechanics.constant_mass())?;
-        let steady_gram =
-            S::STRUCTURE.has_steady_gram().then(|| S::GramFactors::factor(&mechanics.steady_gram()));
+        let steady_gram = S::STRUCTURE
+            .has_steady_gram()
+            .then(|| S::GramFactors::factor_of_any_size(&mechanics.steady_gram()));
         Ok(Self { inverse_mass, momentum_at_rest: momentum, steady_gram })
     }
 
@@ -94,6 +95,32 @@ impl<S: MechanicalSystem> ConstantLegendre<S> {
         jacobian: &S::PerJacobianEntry<f64>,
         tally: &mut impl Tally,
     ) -> Result<S::GramFactors, SingularMatrix> {
+        self.factored_gram(mechanics, jacobian, tally, S::GramFactors::factor_of_any_size)
+    }
+
+    /// The same for a step that takes another way where products of masses leave the numbers.
+    ///
+    /// # Errors
+    /// As [`factor_gram`](Self::factor_gram), and there.
+    #[inline(always)]
+    pub(crate) fn factor_usual_gram(
+        &self,
+        mechanics: &Mechanics<S>,
+        jacobian: &S::PerJacobianEntry<f64>,
+        tally: &mut impl Tally,
+    ) -> Result<S::GramFactors, SingularMatrix> {
+        self.factored_gram(mechanics, jacobian, tally, S::GramFactors::factor)
+    }
+
+    /// `G M⁻¹ Gᵀ`, as `factor` factors it; where the constraints fix all of it, as it was factored when the run started.
+    #[inline(always)]
+    fn factored_gram(
+        &self,
+        mechanics: &Mechanics<S>,
+        jacobian: &S::PerJacobianEntry<f64>,
+        tally: &mut impl Tally,
+        factor: impl FnOnce(&Gram<S>) -> Result<S::GramFactors, SingularMatrix>,
+    ) -> Result<S::GramFactors, SingularMatrix> {
         if const { S::STRUCTURE.has_steady_gram() }
             && let Some(factors) = &self.steady_gram
         {
@@ -103,7 +130,7 @@ impl<S: MechanicalSystem> ConstantLegendre<S> {
         let directions = mechanics.constraint_directions(jacobian, &self.inverse_mass);
         let matrix = mechanics.mass_gram_matrix(jacobian, &directions);
         tally.see_matrix(|| gram_conditioning::<S>(&matrix));
-        let gram = S::GramFactors::factor(&matrix)?;
+        let gram = factor(&matrix)?;
         if gram.is_fallback() {
             tally.count_fallback();
         }

@@ -48,7 +48,7 @@ fn multipliers<S: MechanicalSystem, F: KickDriftKick<S>>(
 ) -> Result<<F::Coupling as Coupling<S>>::GramFactors, DerivativeError> {
     let directions = mechanics.constraint_directions(right, free.drift());
     let gram = mechanics.gram_matrix::<F::Coupling>(left, &directions);
-    Factorization::factor(&gram).map_err(|matrix| DerivativeError::Singular { t, matrix })
+    Factorization::factor_of_any_size(&gram).map_err(|matrix| DerivativeError::Singular { t, matrix })
 }
 
 /// `G x`.

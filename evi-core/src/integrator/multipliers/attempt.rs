@@ -127,7 +127,7 @@ pub(super) fn round_off_of<C: Array<f64>>(reach: &C) -> C {
 
 /// Whether every constraint passes: all are asked, without a branch for each.
 #[inline(always)]
-fn are_all<S: MechanicalSystem>(passes: impl Fn(usize) -> bool) -> bool {
+pub(super) fn are_all<S: MechanicalSystem>(passes: impl Fn(usize) -> bool) -> bool {
     let mut all = true;
     for c in 0..S::N_CONSTRAINTS {
         all &= passes(c);

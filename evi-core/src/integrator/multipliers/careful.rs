@@ -1,7 +1,9 @@
 //! Newton's iteration on the multipliers where corrections with one matrix do not suffice: a fresh matrix for each.
 
+use core::borrow::Borrow;
+
 use super::Landing;
-use super::attempt::{Attempt, CHORDS};
+use super::attempt::{Attempt, CHORDS, are_all};
 use super::history::History;
 use super::span::{DriftGram, Span, move_by};
 use crate::array::Array;
@@ -90,12 +92,15 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'_, S, F, R>
         tally: &mut impl Tally,
     ) -> Result<Landing<S, R::Sum>, StepError> {
         let mut impulse = begun.clone();
-        let scale = self.scale(&q, [expected, begun]);
-        let mut progress = Progress::after(relative_length::<S>(&previous, &scale));
+        let mut progress = if corrections == 0 {
+            Progress::default()
+        } else {
+            Progress::after(relative_length::<S>(&previous, &self.scale(&q, [expected, begun])))
+        };
         loop {
             let (residual, jacobian) = self.constraints_at(&q);
             let matrix = self.mechanics.gram_matrix::<F::Coupling>(&jacobian, &self.directions);
-            let gram = DriftGram::<S, F>::factor(&matrix).map_err(|matrix| {
+            let gram = DriftGram::<S, F>::factor_of_any_size(&matrix).map_err(|matrix| {
                 let failure = IterationFailure::Singular { correction: progress.corrections() + 1, matrix };
                 self.failed(failure, &residual, 0.0)
             })?;
@@ -113,11 +118,40 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'_, S, F, R>
                 Ok(true) => return self.landing(q, impulse, corrections + progress.corrections(), tally),
                 Ok(false) => previous = residual,
                 Err(failure) => {
+                    if self.is_round_off_of_terms(&q) {
+                        return self.landing(q, impulse, corrections + progress.corrections(), tally);
+                    }
                     let (residual, _) = self.constraints_at(&q);
                     return Err(self.failed(failure.into(), &residual, gram.pivot_ratio()));
                 }
             }
         }
+    }
+
+    /// Whether what the constraints leave at `q` is the round-off of terms that are no part of their scale, as those of `x² + (y − l)² = l²` are at the
+    /// origin: a correction makes it no smaller, though it leaves nothing by the linear equations, and next to nothing by the curvature
+    /// of the constraints.
+    #[cold]
+    fn is_round_off_of_terms(&self, q: &R::Sum) -> bool {
+        /// What is left of a residual by equations that are solved.
+        const SOLVED: f64 = 1.0 / 1024.0;
+        let (residual, jacobian) = self.constraints_at(q);
+        let matrix = self.mechanics.gram_matrix::<F::Coupling>(&jacobian, &self.directions);
+        let Ok(gram) = DriftGram::<S, F>::factor_of_any_size(&matrix) else { return false };
+        let correction = self.correction(&gram, &residual);
+        let solved = self.mechanics.reach(&jacobian, &correction.moved);
+        let bent = self.remainder(q, &correction.moved);
+        let (value, moved) = (q.value(), &correction.moved);
+        let end = Array::from_fn(|i| value.borrow()[i] - moved[i]);
+        let left = S::constraints(&self.mechanics.constants, self.t_end, &end);
+        are_all::<S>(|c| {
+            let allowed = SOLVED * residual[c].abs();
+            // Written so that a NaN is none.
+            let is_corrected = (solved[c] - residual[c]).abs() <= allowed && bent[c].abs() <= allowed;
+            let stays = (0.25 * residual[c].abs()..=4.0 * residual[c].abs()).contains(&left[c].abs());
+            // Exactly 0 is no residual.
+            residual[c] == 0.0 || (is_corrected && stays)
+        })
     }
 
     /// The numbers that explain a failure.

@@ -86,7 +86,7 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>> MultiplierStep<S, F> {
             return span.land_slowly(None, history, state, tally);
         };
         if attempt.is_solved
-            && let Ok(gram) = free.legendre().factor_gram(mechanics, &attempt.jacobian, tally)
+            && let Ok(gram) = free.legendre().factor_usual_gram(mechanics, &attempt.jacobian, tally)
         {
             let Attempt { q, correction, corrections, .. } = attempt;
             move_by::<S, _>(&mut span.momentum, &correction.pull);

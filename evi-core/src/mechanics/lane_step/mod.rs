@@ -42,6 +42,9 @@ use reach::unit;
 /// The Gram matrices are made anew after a pass that has moved a point by more than this share of the configuration.
 const STALE: f64 = 3e-3;
 
+/// The square of a rounding is 1e-32 of that of a configuration, and vanishes below 1e-308: this leaves lengths down to 1e-38.
+const SMALLEST_MASS: f64 = 1e-200;
+
 /// The passes of one scene, for one step size.
 pub(crate) struct LaneStep<S: MechanicalSystem, const K: usize> {
     /// Relative length of a last correction.
@@ -92,10 +95,13 @@ impl<S: MechanicalSystem, const K: usize> LaneStep<S, K> {
         || (S::STRUCTURE.forces.exist() && (S::STRUCTURE.forces.on.on_q || S::STRUCTURE.forces.on.on_v));
 
     /// Passes end where the next one would move no point by more than `tolerance` of the configuration. `None` if the mass matrix is not positive
-    /// definite: passes eliminate without pivoting.
+    /// definite: passes eliminate without pivoting; nor where masses are so small that squares of lengths in their metric vanish before lengths do.
     pub(crate) fn new(mechanics: &Mechanics<S>, h: f64, tolerance: f64) -> Option<Self> {
         let mass = mechanics.constant_mass();
         Cholesky::new::<S::PerCoordinate<f64>>(&mass)?;
+        if (0..S::N_COORDINATES).any(|i| mass[i][i] < SMALLEST_MASS) {
+            return None;
+        }
         let inverse = CoordinateMatrix::<S>::inverse_of(&mass).ok()?;
         let is_coupled = |i: usize, j: usize| i == j || !<AsScene as Coupling<S>>::IS_DIAGONAL;
         let inverse_at = |i: usize, j: usize| if is_coupled(i, j) { inverse.at(i, j) } else { 0.0 };
