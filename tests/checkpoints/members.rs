@@ -125,8 +125,9 @@ fn steps_in_parts() {
     // From the horizontal so long that some have no solution as a whole.
     let (system, scheme) =
         (DoublePendulum::UNIT, Evi::simpson(0.1).frequency(9.81_f64.sqrt()).rescued::<6>());
-    let (past, counts) = resumed(system, scheme, system.horizontal());
-    assert!(past == Remembered && counts.rescued_steps > 0, "{counts:?}");
+    // Steps as long as these trust no prediction: the past is in the last bits of a momentum, or by chance in none.
+    let (_, counts) = resumed(system, scheme, system.horizontal());
+    assert!(counts.rescued_steps > 0, "{counts:?}");
 }
 
 #[test]

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use evi_examples::{Scene, Visitor, visit_all};
+use evi_examples::{LoopScene, LoopVisitor, Scene, Visitor, visit_all, visit_loops};
 
 /// Files of the gallery that are no scene: what scenes have in common.
-const SHARED: [&str; 3] = ["chain", "lib", "scene"];
+const SHARED: [&str; 4] = ["chain", "lib", "loops", "scene"];
 
 struct Names(Vec<(&'static str, &'static str)>);
 
@@ -18,9 +18,22 @@ impl Visitor for Names {
     }
 }
 
+impl LoopVisitor for Names {
+    fn visit<S: LoopScene>(&mut self) {
+        self.0.push((S::NAME, S::REPORT.name));
+        assert!(S::SUMMARY.len() > 20, "{} has something to say: {}", S::NAME, S::SUMMARY);
+    }
+}
+
 fn names() -> Vec<(&'static str, &'static str)> {
     let mut names = Names(Vec::new());
     visit_all(&mut names);
+    names.0
+}
+
+fn names_of_loops() -> Vec<(&'static str, &'static str)> {
+    let mut names = Names(Vec::new());
+    visit_loops(&mut names);
     names.0
 }
 
@@ -33,16 +46,18 @@ fn are_those_of_the_files() {
         .map(|path| path.file_stem().expect("a name").to_string_lossy().into_owned())
         .filter(|name| !SHARED.contains(&name.as_str()))
         .collect();
-    let visited: BTreeSet<String> = names().iter().map(|(name, _)| (*name).to_owned()).collect();
+    let visited: BTreeSet<String> =
+        names().iter().chain(&names_of_loops()).map(|(name, _)| (*name).to_owned()).collect();
     assert_eq!(visited, files);
 }
 
 #[test]
 fn are_sorted_and_those_of_the_structs_in_snake_case() {
-    let names = names();
-    assert!(names.windows(2).all(|pair| pair[0].0 < pair[1].0), "{names:?}");
-    for (name, of_struct) in names {
-        assert!(name.chars().all(|letter| matches!(letter, 'a'..='z' | '0'..='9' | '_')), "{name}");
-        assert_eq!(name.replace('_', ""), of_struct.to_lowercase());
+    for names in [names(), names_of_loops()] {
+        assert!(names.windows(2).all(|pair| pair[0].0 < pair[1].0), "{names:?}");
+        for (name, of_struct) in names {
+            assert!(name.chars().all(|letter| matches!(letter, 'a'..='z' | '0'..='9' | '_')), "{name}");
+            assert_eq!(name.replace('_', ""), of_struct.to_lowercase());
+        }
     }
 }
