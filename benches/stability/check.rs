@@ -10,7 +10,7 @@ use evi_core::generic::GenericSystem;
 use num_dual::Dual64;
 use serde::Serialize;
 
-use crate::action::Action;
+use crate::action::Equations;
 use crate::tangent::Tangents;
 
 /// A residual of so many roundings is none of round-off. Measured over all rows: 1 to 30 of most, 750 of generalized-α in steps of ten
@@ -47,7 +47,7 @@ pub(crate) struct Promise {
     /// constraints.
     pub(crate) conditioning: [f64; 2],
     /// A step is a stationary point of this discrete action.
-    pub(crate) action: Option<Action>,
+    pub(crate) action: Option<Equations>,
 }
 
 /// To what round-off a method holds the hidden constraints.
@@ -67,6 +67,9 @@ pub(crate) enum Velocity {
 pub(crate) struct Residual {
     pub(crate) roundings: f64,
     pub(crate) equation: &'static str,
+    /// Whether the equations of its action were among those that were looked at: not, where it promises none, and where the points between its ends were
+    /// not found again.
+    pub(crate) has_action: bool,
 }
 
 /// The checks of a run.
@@ -78,27 +81,30 @@ pub(crate) struct Check {
     /// Its step.
     pub(crate) worst_step: u64,
     pub(crate) equation: &'static str,
+    /// Of so many steps the equations of the action were checked, too.
+    pub(crate) actions: u64,
 }
 
 impl Check {
     pub(crate) fn add(&mut self, step: u64, residual: Residual) {
+        let Residual { roundings, equation, has_action } = residual;
         self.steps += 1;
+        self.actions += u64::from(has_action);
         // Written so that a NaN is the worst.
-        let is_better = residual.roundings <= self.worst;
+        let is_better = roundings <= self.worst;
         if !is_better && !self.worst.is_nan() {
-            let Residual { roundings, equation } = residual;
-            *self = Self { steps: self.steps, worst: roundings, worst_step: step, equation };
+            (self.worst, self.worst_step, self.equation) = (roundings, step, equation);
         }
     }
 
     /// The checks of both.
     pub(crate) fn merge(&mut self, other: &Self) {
-        let steps = self.steps + other.steps;
+        let (steps, actions) = (self.steps + other.steps, self.actions + other.actions);
         let is_better = other.worst <= self.worst;
         if !is_better {
             *self = *other;
         }
-        self.steps = steps;
+        (self.steps, self.actions) = (steps, actions);
     }
 
     pub(crate) fn has_failed(&self) -> bool {
@@ -117,14 +123,14 @@ pub(crate) fn step<S: GenericSystem>(
     after: &Snapshot,
 ) -> Residual {
     if !after.is_finite() {
-        return Residual { roundings: f64::INFINITY, equation: "a number is not finite" };
+        return Residual { roundings: f64::INFINITY, equation: "a number is not finite", has_action: false };
     }
-    let mut worst = Residual { roundings: 0.0, equation: "" };
+    let mut worst = Residual { roundings: 0.0, equation: "", has_action: false };
     let mut hold = |equation: &'static str, residual: f64, rounding: f64| {
         let roundings = if residual == 0.0 { 0.0 } else { residual.abs() / rounding };
         let is_smaller = roundings <= worst.roundings;
         if !is_smaller && !worst.roundings.is_nan() {
-            worst = Residual { roundings, equation };
+            worst = Residual { roundings, equation, ..worst };
         }
     };
     let eps = f64::EPSILON;
@@ -132,7 +138,7 @@ pub(crate) fn step<S: GenericSystem>(
     let momentum = momentum(system, after);
     if momentum.iter().any(|p| p.is_nan()) {
         // Squares of the velocity overflow: there is no energy, and the run has diverged.
-        return Residual { roundings: 0.0, equation: "the energy is no number" };
+        return Residual { roundings: 0.0, equation: "the energy is no number", has_action: false };
     }
     let (largest_p, from_v) = (norm(&after.p), norm(&momentum));
     for (p, value) in after.p.iter().zip(&momentum) {
@@ -155,14 +161,15 @@ pub(crate) fn step<S: GenericSystem>(
         let rounding = eps * (gradient * speed + ends.rates[c].abs());
         hold("G v + ∂φ/∂t = 0", rate, rounding * promise.conditioning[0]);
     }
-    if let Some(action) = &promise.action {
+    if let Some(([departing, arriving], rounding)) =
+        promise.action.as_ref().and_then(|action| action.momenta_with_rounding(system, h, before, after))
+    {
         let starts = Tangents::at(system, before.t, &before.q);
-        let [departing, arriving] = action.momenta(system, h, before, after);
-        let rounding = action.rounding(system, h, before, after);
         let left: Vec<f64> = departing.iter().zip(&before.p).map(|(d, p)| d - p).collect();
         hold("−D₁L_d + G₀ᵀℓ = p₀", norm(&starts.tangential(left)), rounding + eps * norm(&before.p));
         let left: Vec<f64> = arriving.iter().zip(&after.p).map(|(d, p)| d - p).collect();
         hold("D₂L_d − G₁ᵀN = p₁", norm(&ends.tangential(left)), rounding + eps * largest_p);
+        worst.has_action = true;
     }
     worst
 }

@@ -99,8 +99,7 @@ struct Ends {
 impl Ends {
     fn of(system: &DoublePendulum, action: &Action, h: f64, start: &Snapshot) -> Option<Self> {
         let momentum = |q1: [f64; 4]| -> [f64; 4] {
-            let after = Snapshot { q: q1.into(), ..start.clone() };
-            let [departing, _] = action.momenta(system, h, start, &after);
+            let [departing, _] = action.momenta(system, h, start.t, [&start.q, &q1]);
             [0, 1, 2, 3].map(|i| departing[i])
         };
         let at_zero = momentum([0.0; 4]);

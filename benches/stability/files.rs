@@ -33,6 +33,8 @@ struct Record {
     hidden_constraint_error: Option<f64>,
     momentum_error: Option<f64>,
     checked_steps: u64,
+    /// Of so many of them the equations of the action, too.
+    checked_actions: u64,
     /// Largest residual of a checked step, in roundings.
     check_roundings: f64,
     check_step: u64,
@@ -66,6 +68,7 @@ impl From<&Row> for Record {
             hidden_constraint_error: finding.hidden_constraint_error,
             momentum_error: finding.momentum_error,
             checked_steps: finding.check.steps,
+            checked_actions: finding.check.actions,
             check_roundings: finding.check.worst,
             check_step: finding.check.worst_step,
             check_equation: finding.check.equation.into(),

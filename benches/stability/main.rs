@@ -11,6 +11,7 @@ mod cases;
 mod check;
 mod existence;
 mod files;
+mod inner_points;
 mod markdown;
 mod measurement;
 mod methods;

@@ -9,7 +9,7 @@ use evi_core::scheme::Frequency;
 use evi_core::system::MechanicalSystem;
 use evi_examples::Momentum;
 
-use crate::action::{Action, MIDPOINT, SIMPSON, TRAPEZOID};
+use crate::action::{Action, Equations, GAUSS_4, LOBATTO_4, MIDPOINT, SIMPSON, TRAPEZOID};
 use crate::check::{self, Promise, Residual, Snapshot, Velocity, norm};
 use crate::observation::Sample;
 use crate::tangent::Tangents;
@@ -97,8 +97,9 @@ impl<S: Portable> Experiment<S> {
     }
 
     fn promise(&self, method: &str) -> Promise {
-        let straight = |nodes| Some(Action { nodes, frequency: Frequency::ZERO });
-        let curved = |nodes| self.motion.frequency.map(|frequency| Action { nodes, frequency });
+        let of_ends = |nodes, frequency| Equations::OfEnds(Action { nodes, frequency });
+        let straight = |nodes| Some(of_ends(nodes, Frequency::ZERO));
+        let curved = |nodes| self.motion.frequency.map(|frequency| of_ends(nodes, frequency));
         let action = match method {
             "midpoint" | "midpoint_compensated" | "midpoint_of_rank" => straight(MIDPOINT),
             "trapezoid" | "rattle" => straight(TRAPEZOID),
@@ -106,6 +107,8 @@ impl<S: Portable> Experiment<S> {
             "midpoint_trig" => curved(MIDPOINT),
             "trapezoid_trig" => curved(TRAPEZOID),
             "simpson_trig" => curved(SIMPSON),
+            "galerkin_4" => Some(Equations::OfPoints(&LOBATTO_4)),
+            "gauss_4" => Some(Equations::OfPoints(&GAUSS_4)),
             _ => None,
         };
         let is_index_1 = matches!(method, "rk4" | "implicit_midpoint" | "dop853");

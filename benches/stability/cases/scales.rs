@@ -6,7 +6,7 @@ use evi_examples::{DoublePendulum, GRAVITY, Start};
 
 use crate::existence::proof;
 use crate::methods::with_constraints;
-use crate::observation::{Observation, observe};
+use crate::observation::{Course, Observation, observe};
 use crate::rows::{Effort, Planned, Trial};
 use crate::specimen::{Experiment, Specimen};
 use crate::theory::{Figure, Theory, beside_constraints};
@@ -26,6 +26,7 @@ pub(crate) fn rows(effort: Effort) -> Vec<Planned> {
         let system = DoublePendulum { m1: 1.0, m2: ratio, l1: 1.0, l2: 0.8, g: GRAVITY };
         rows.extend(unequal(effort, &format!("m₂/m₁ = {ratio:.0e}"), system));
     }
+    rows.extend(jerked(effort));
     for ratio in effort.of(&[1e-9, 1e-6, 1e-3, 1e3, 1e6, 1e9]) {
         let system = DoublePendulum { m1: 1.0, m2: 0.7, l1: 1.0, l2: ratio, g: GRAVITY };
         rows.extend(unequal(effort, &format!("l₂/l₁ = {ratio:.0e}"), system));
@@ -67,6 +68,22 @@ fn unequal(effort: Effort, name: &str, system: DoublePendulum) -> Vec<Planned> {
         );
     }
     rows
+}
+
+/// A heavy bob falls freely on bent rods, for the light joint gives way, until they are straight: there the joint takes over its energy at
+/// `v √(m₂/m₁)`, a hundred metres per second, and crosses the line in 1e-5 s. With steps that resolve this, once through it.
+fn jerked(effort: Effort) -> Vec<Planned> {
+    const H: f64 = 1e-6;
+    const STEPS: u64 = 20_000;
+    let system = DoublePendulum { m1: 1.0, m2: 1e6, l1: 1.0, l2: 0.8, g: GRAVITY };
+    let experiment = swinging(system);
+    let course = Course { steps_per_sample: 10, ..effort.course(H, STEPS, 2.7) };
+    Trial::new(CASE, "m₂/m₁ = 1e6, h = 1e-6 through the jerk", experiment, course)
+        .measuring(|_, seen| {
+            let speed = seen.end.as_ref().map_or(f64::NAN, |end| end.v[0].hypot(end.v[1]));
+            vec![Figure::seen("speed of the joint at the end", speed)]
+        })
+        .rows()
 }
 
 fn swinging(system: DoublePendulum) -> Experiment<DoublePendulum> {
