@@ -59,7 +59,8 @@ fn finding(method: &'static str, effort: Effort) -> Finding {
             (0..steps_per_block).for_each(|_| exact.advance());
             let after = Snapshot::of(&*solver);
             seen.samples.push(experiment.look(&at_start, &after, end));
-            seen.check.add(end, experiment.check(method, H, &before, &after));
+            let residual = experiment.check(method, H, &before, &after, seen.check.steps);
+            seen.check.add(end, residual);
             walk.push((energy_of(&*solver) - exact.energy()).rounded());
         }
         walks.push(walk);

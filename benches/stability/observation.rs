@@ -115,7 +115,8 @@ pub(crate) fn observe(specimen: &dyn Specimen, method: &str, course: Course) -> 
         seen.steps = step;
         let after = Snapshot::of(&*solver);
         let sample = specimen.look(&start, &after, step);
-        seen.check.add(step, specimen.check(method, course.h, &before, &after));
+        let residual = specimen.check(method, course.h, &before, &after, seen.check.steps);
+        seen.check.add(step, residual);
         // Written so that a NaN is not.
         let is_near = sample.energy.abs() <= HOPELESS && sample.size <= DIVERGED * seen.largest_size;
         seen.samples.push(sample);
