@@ -56,7 +56,7 @@ pub(crate) fn all(
     out: Option<&Path>,
     interruption: &Interruption,
 ) -> Result<Tolerances, Box<dyn Error>> {
-    let count = if quick { 100_000 } else { 2_000_000 };
+    let count = if quick { 4_096 } else { 2_000_000 };
     let name = format!("tolerances {count} {H:?} {SAMPLES} {STEPS}");
     let journal = out.map(|out| Journal::open(journal(out), &name)).transpose()?;
     let height = Quantity::<DoublePendulum>::new(QUANTITIES[1], |sight| sight.state.q()[3]);
