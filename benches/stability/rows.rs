@@ -26,7 +26,7 @@ impl Effort {
     /// Steps after which a method that chooses its own is not followed further: the same row on every machine. The longest of them, of a pendulum that spins at 1e6 rad/s,
     /// takes 4e7.
     pub(crate) const fn most_steps(self) -> u64 {
-        if self.quick { 1_000_000 } else { 100_000_000 }
+        if self.quick { 20_000 } else { 100_000_000 }
     }
 
     /// A course of `steps` steps of which every one is looked at; the slowest oscillation has a period.
