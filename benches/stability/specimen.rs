@@ -173,7 +173,7 @@ impl<S: Portable> Specimen for Experiment<S> {
         /// To find the points between the ends of a step takes longer than the step: they are looked for in one out of so many.
         const WITH_POINTS: u64 = 4;
         let mut promise = self.promise(method);
-        if checked % WITH_POINTS != 0 {
+        if !checked.is_multiple_of(WITH_POINTS) {
             promise.action = promise.action.filter(|action| matches!(action, Equations::OfEnds(_)));
         }
         check::step(&self.motion.system, &promise, h, before, after)
