@@ -32,12 +32,9 @@ pub(crate) fn steps_between(t: f64, target: f64, h: f64) -> Result<u64, StepErro
 /// A one-step map and the state that it has reached.
 ///
 /// A step that fails leaves the run at the last state that was reached.
-// Where the state lies in lines of the cache is the same for every run: a pair of numbers that is stored across two of them and loaded at once by the next
-// step takes the double pendulum 14 ns, and a run would lie so in one case out of four.
-#[repr(C, align(64))]
 pub struct Run<S: MechanicalSystem, M, T = Fallbacks> {
-    state: State<S>,
     map: M,
+    state: State<S>,
     start_time: f64,
     steps: u64,
     tally: T,
