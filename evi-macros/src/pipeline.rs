@@ -25,8 +25,7 @@ pub(crate) fn expand(input: TokenStream) -> TokenStream {
         return emit::fallback(&declaration, &diagnostics);
     };
     // L and φ → the derivatives that the integrators need, each simplified.
-    let mut equations = mechanics::differentiate_equations(&mut graph, &model);
-    equations.find_steady_gram(&mut graph);
+    let equations = mechanics::differentiate_equations(&mut graph, &model);
     // Derivatives → what is zero, constant, varying.
     let structure = structure::analyze(&graph, &equations);
     structure.check_gradients(&model, &mut diagnostics);

@@ -10,7 +10,6 @@ const SMALLEST_DETERMINANT: f64 = 8.0 * f64::EPSILON;
 const UNDERFLOW: f64 = f64::MIN_POSITIVE / f64::EPSILON;
 
 /// The empty matrix.
-#[derive(Clone)]
 pub struct Inverse0;
 
 impl Factorization<[f64; 0], [[f64; 0]; 0]> for Inverse0 {
@@ -34,7 +33,6 @@ impl Factorization<[f64; 0], [[f64; 0]; 0]> for Inverse0 {
 }
 
 /// The reciprocal of a 1 × 1 matrix.
-#[derive(Clone)]
 pub struct Inverse1(f64);
 
 impl Factorization<[f64; 1], [[f64; 1]; 1]> for Inverse1 {
@@ -67,7 +65,6 @@ impl Factorization<[f64; 1], [[f64; 1]; 1]> for Inverse1 {
 
 /// A 2 × 2 matrix by its adjugate and its determinant: one division, where elimination waits for two, and none of the
 /// products waits for it.
-#[derive(Clone)]
 pub struct Inverse2 {
     /// In any unit.
     matrix: [[f64; 2]; 2],

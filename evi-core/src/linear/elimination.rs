@@ -23,7 +23,6 @@ pub fn reciprocal_pivot(pivot: f64, magnitude: f64) -> Option<f64> {
 }
 
 /// An [`Elimination`] with the pivoted dense solve as its fallback.
-#[derive(Clone)]
 pub enum Guarded<E, const D: usize> {
     /// The scene's own elimination.
     Own(E),

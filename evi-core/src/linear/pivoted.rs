@@ -35,7 +35,6 @@ pub(crate) fn checked_pivot_ratio(
 }
 
 /// `P A = L U` with partial pivoting (Golub & Van Loan, Matrix Computations, 4th ed., alg. 3.4.1).
-#[derive(Clone)]
 pub struct Pivoted<M, P> {
     /// `U` on and above the diagonal, the multipliers of `L` below it.
     rows: M,

@@ -1,6 +1,6 @@
 //! Products with the constraint Jacobian, entry by entry of its pattern.
 
-use super::{AsMass, CoordinateMatrix, Coupling, Mechanics};
+use super::{CoordinateMatrix, Coupling, Mechanics};
 use crate::array::Array;
 use crate::scalar::Scalar;
 use crate::system::{Entry, MechanicalSystem};
@@ -14,42 +14,6 @@ pub(super) type Gram<S> = <S as MechanicalSystem>::PerConstraint<<S as Mechanica
 
 /// Where a sum begins: `−0 + x` is `x` to the last bit, so that the compiler leaves the addition out.
 pub(crate) const NOTHING: f64 = -0.0;
-
-fn no_gram<S: MechanicalSystem>() -> Gram<S> {
-    Array::from_fn(|_| Array::from_fn(|_| NOTHING))
-}
-
-/// A matrix over the constraints that is being added up: of few constraints from the terms of even and those of odd columns, two short chains of
-/// additions instead of a long one.
-struct GramSum<S: MechanicalSystem> {
-    even: Gram<S>,
-    odd: Gram<S>,
-}
-
-impl<S: MechanicalSystem> GramSum<S> {
-    /// Few constraints wait for their matrix; to add up matrices of many, most of whose entries are zero, takes longer than the wait.
-    const IN_HALVES: bool = S::N_CONSTRAINTS <= 4;
-
-    #[inline(always)]
-    fn nothing() -> Self {
-        Self { even: no_gram::<S>(), odd: no_gram::<S>() }
-    }
-
-    #[inline(always)]
-    fn add(&mut self, row: usize, other: usize, col: usize, term: f64) {
-        let gram = if Self::IN_HALVES && col % 2 == 1 { &mut self.odd } else { &mut self.even };
-        gram[row][other] += term;
-    }
-
-    #[inline(always)]
-    fn total(self) -> Gram<S> {
-        let Self { even, odd } = self;
-        if !Self::IN_HALVES {
-            return even;
-        }
-        Array::from_fn(|row| Array::from_fn(|col| even[row][col] + odd[row][col]))
-    }
-}
 
 impl<S: MechanicalSystem> Mechanics<S> {
     /// Adds `Gᵀ x` to `sum`.
@@ -102,45 +66,23 @@ impl<S: MechanicalSystem> Mechanics<S> {
         jacobian: &S::PerJacobianEntry<f64>,
         directions: &Directions<S>,
     ) -> Gram<S> {
-        let mut sum = GramSum::<S>::nothing();
-        self.for_each_gram_term::<C>(jacobian, directions, |row, other, col, term| {
-            sum.add(row, other, col, term)
-        });
-        sum.total()
-    }
-
-    /// `G M⁻¹ Gᵀ` of a constant mass matrix at a configuration on the constraints; the rows of `directions` are the columns of `M⁻¹ Gᵀ`.
-    #[inline(always)]
-    pub(crate) fn mass_gram_matrix(
-        &self,
-        jacobian: &S::PerJacobianEntry<f64>,
-        directions: &Directions<S>,
-    ) -> Gram<S> {
-        if S::STRUCTURE.steady_gram.is_empty() {
-            return self.gram_matrix::<AsMass>(jacobian, directions);
+        /// Few constraints wait for their matrix; to add up matrices of many, most of whose entries are zero, takes longer than the wait.
+        const MOST_IN_HALVES: usize = 4;
+        let nothing = || -> Gram<S> { Array::from_fn(|_| Array::from_fn(|_| NOTHING)) };
+        if S::N_CONSTRAINTS > MOST_IN_HALVES {
+            let mut gram = nothing();
+            self.for_each_gram_term::<C>(jacobian, directions, |row, other, _, term| {
+                gram[row][other] += term
+            });
+            return gram;
         }
-        let mut sum = GramSum::<S>::nothing();
-        S::for_each_unsteady_pair(&self.constants, jacobian, |row, other, col, slope| {
-            sum.add(row, other, col, slope * directions[other][col]);
+        // Terms of even and of odd columns: two short chains of additions instead of a long one.
+        let (mut even, mut odd) = (nothing(), nothing());
+        self.for_each_gram_term::<C>(jacobian, directions, |row, other, col, term| {
+            let gram = if col % 2 == 0 { &mut even } else { &mut odd };
+            gram[row][other] += term;
         });
-        let mut gram = sum.total();
-        self.set_steady_gram(&mut gram);
-        gram
-    }
-
-    /// The matrix `G M⁻¹ Gᵀ` where all of its entries are steady.
-    pub(crate) fn steady_gram(&self) -> Gram<S> {
-        let mut gram = no_gram::<S>();
-        self.set_steady_gram(&mut gram);
-        gram
-    }
-
-    /// Overwrites the entries of `G M⁻¹ Gᵀ` that are the same at every configuration on the constraints.
-    #[inline(always)]
-    fn set_steady_gram(&self, gram: &mut Gram<S>) {
-        S::for_each_steady_entry(&self.constants, |row, col, value| {
-            (gram[row][col], gram[col][row]) = (value, value);
-        });
+        Array::from_fn(|row| Array::from_fn(|col| even[row][col] + odd[row][col]))
     }
 
     /// Calls `add(row, other, col, G[row][col] D[col][other])` for every term of `G D`.

@@ -28,8 +28,6 @@ pub(crate) struct ConstantLegendre<S: MechanicalSystem> {
     inverse_mass: CoordinateMatrix<S, AsMass>,
     /// `a = ∂L/∂v` at `v = 0`.
     momentum_at_rest: S::PerCoordinate<f64>,
-    /// Factors of `G M⁻¹ Gᵀ` where the constraints fix all of it.
-    steady_gram: Option<Result<S::GramFactors, SingularMatrix>>,
 }
 
 impl<S: MechanicalSystem> ConstantLegendre<S> {
@@ -43,10 +41,7 @@ impl<S: MechanicalSystem> ConstantLegendre<S> {
         let LagrangianGradient { momentum, .. } =
             S::lagrangian_gradient(&mechanics.constants, 0.0, &at_rest, &at_rest);
         let inverse_mass = CoordinateMatrix::inverse_of(&mechanics.constant_mass())?;
-        let steady_gram = S::STRUCTURE
-            .has_steady_gram()
-            .then(|| S::GramFactors::factor_of_any_size(&mechanics.steady_gram()));
-        Ok(Self { inverse_mass, momentum_at_rest: momentum, steady_gram })
+        Ok(Self { inverse_mass, momentum_at_rest: momentum })
     }
 
     /// `M⁻¹`.
@@ -95,7 +90,12 @@ impl<S: MechanicalSystem> ConstantLegendre<S> {
         jacobian: &S::PerJacobianEntry<f64>,
         tally: &mut impl Tally,
     ) -> Result<S::GramFactors, SingularMatrix> {
-        self.factored_gram(mechanics, jacobian, tally, S::GramFactors::factor_of_any_size)
+        let matrix = self.gram(mechanics, jacobian, tally);
+        let gram = S::GramFactors::factor_of_any_size(&matrix)?;
+        if gram.is_fallback() {
+            tally.count_fallback();
+        }
+        Ok(gram)
     }
 
     /// The same for a step that takes another way where products of masses leave the numbers.
@@ -109,32 +109,26 @@ impl<S: MechanicalSystem> ConstantLegendre<S> {
         jacobian: &S::PerJacobianEntry<f64>,
         tally: &mut impl Tally,
     ) -> Result<S::GramFactors, SingularMatrix> {
-        self.factored_gram(mechanics, jacobian, tally, S::GramFactors::factor)
-    }
-
-    /// `G M⁻¹ Gᵀ`, as `factor` factors it; where the constraints fix all of it, as it was factored when the run started.
-    #[inline(always)]
-    fn factored_gram(
-        &self,
-        mechanics: &Mechanics<S>,
-        jacobian: &S::PerJacobianEntry<f64>,
-        tally: &mut impl Tally,
-        factor: impl FnOnce(&Gram<S>) -> Result<S::GramFactors, SingularMatrix>,
-    ) -> Result<S::GramFactors, SingularMatrix> {
-        if const { S::STRUCTURE.has_steady_gram() }
-            && let Some(factors) = &self.steady_gram
-        {
-            tally.see_matrix(|| gram_conditioning::<S>(&mechanics.steady_gram()));
-            return factors.clone();
-        }
-        let directions = mechanics.constraint_directions(jacobian, &self.inverse_mass);
-        let matrix = mechanics.mass_gram_matrix(jacobian, &directions);
-        tally.see_matrix(|| gram_conditioning::<S>(&matrix));
-        let gram = factor(&matrix)?;
+        let matrix = self.gram(mechanics, jacobian, tally);
+        let gram = S::GramFactors::factor(&matrix)?;
         if gram.is_fallback() {
             tally.count_fallback();
         }
         Ok(gram)
+    }
+
+    /// `G M⁻¹ Gᵀ`.
+    #[inline(always)]
+    fn gram(
+        &self,
+        mechanics: &Mechanics<S>,
+        jacobian: &S::PerJacobianEntry<f64>,
+        tally: &mut impl Tally,
+    ) -> Gram<S> {
+        let directions = mechanics.constraint_directions(jacobian, &self.inverse_mass);
+        let matrix = mechanics.gram_matrix::<AsMass>(jacobian, &directions);
+        tally.see_matrix(|| gram_conditioning::<S>(&matrix));
+        matrix
     }
 
     /// Removes from the `momentum` the impulse `Gᵀ N` that leaves the constraints, `G M⁻¹ Gᵀ N = G v + ∂φ/∂t`, with the

@@ -35,14 +35,6 @@ impl SystemReport {
             ),
             (structure.is_autonomous(), "time derivatives: time appears nowhere"),
             (m == 0, "multipliers: the scene has no constraints"),
-            (
-                structure.has_steady_gram(),
-                "matrix of the hidden constraints: the constraints fix it, factored once per run",
-            ),
-            (
-                !structure.steady_gram.is_empty() && !structure.has_steady_gram(),
-                "entries of the matrix of the hidden constraints: those that the constraints fix",
-            ),
             (m > 0 && has_constant_jacobian, "constraint Jacobian: constant, folded once per run"),
         ]
         .into_iter()

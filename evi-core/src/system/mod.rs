@@ -87,8 +87,7 @@ pub trait MechanicalSystem: Sized {
     /// Solver of systems with the mass matrix, `n × n`.
     type MassFactors: Factorization<Self::PerCoordinate<f64>, Self::PerCoordinate<Self::PerCoordinate<f64>>>;
     /// Solver of systems with the Gram matrix `G M⁻¹ Gᵀ` of the constraints, `m × m`.
-    type GramFactors: Factorization<Self::PerConstraint<f64>, Self::PerConstraint<Self::PerConstraint<f64>>>
-        + Clone;
+    type GramFactors: Factorization<Self::PerConstraint<f64>, Self::PerConstraint<Self::PerConstraint<f64>>>;
 
     /// The parameters: values of the struct's fields.
     fn parameters(&self) -> Self::PerParameter<f64>;
@@ -186,32 +185,6 @@ pub trait MechanicalSystem: Sized {
                 visit(entry.row, other.row, entry.col, slope);
             }
         }
-    }
-
-    /// Calls `visit(row, col, (G M⁻¹ Gᵀ)[row][col])` for every entry of the lower triangle that is the same at every configuration on the constraints.
-    /// Written out as [`for_each_slope`](Self::for_each_slope) is.
-    #[inline(always)]
-    fn for_each_steady_entry<T: Copy>(
-        constants: &Self::PerConstant<T>,
-        mut visit: impl FnMut(usize, usize, T),
-    ) {
-        for entry in Self::STRUCTURE.steady_gram {
-            visit(entry.row, entry.col, entry.value(constants.as_ref(), &[]));
-        }
-    }
-
-    /// As [`for_each_slope_pair`](Self::for_each_slope_pair), without the pairs of entries `(row, other)` that are steady.
-    #[inline(always)]
-    fn for_each_unsteady_pair<T: Copy>(
-        constants: &Self::PerConstant<T>,
-        jacobian: &Self::PerJacobianEntry<T>,
-        mut visit: impl FnMut(usize, usize, usize, T),
-    ) {
-        Self::for_each_slope_pair(constants, jacobian, |row, other, col, slope| {
-            if !Self::STRUCTURE.is_steady(row, other) {
-                visit(row, other, col, slope);
-            }
-        });
     }
 
     /// Calls `visit(row, col, ∂²L/∂v[row]∂v[col])` for every entry that is not zero, above the diagonal too. Written out as

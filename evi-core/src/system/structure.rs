@@ -2,7 +2,7 @@
 
 use super::pattern::{has_column, has_row, is_diagonal};
 use super::{
-    Block, ConstraintStructure, Entry, ForceStructure, HessianBlocks, HessianPattern, JacobianPattern,
+    Block, ConstraintStructure, ForceStructure, HessianBlocks, HessianPattern, JacobianPattern,
     KernelOperations, MassShape, Operations, Potential,
 };
 
@@ -49,9 +49,6 @@ pub struct Structure {
     pub each_constraint: &'static [ConstraintStructure],
     /// Pairs of constraints that share a coordinate, `(smaller, larger)` index.
     pub constraint_graph: &'static [(usize, usize)],
-    /// Entries of `G M⁻¹ Gᵀ`, lower triangle, that are the same at every configuration on the constraints, where `M` is constant and diagonal: all
-    /// of them constants.
-    pub steady_gram: &'static [Entry],
     /// Forces that are no derivatives of `L`.
     pub forces: ForceStructure,
     /// Operations of each kernel of `L` and `φ`.
@@ -76,7 +73,6 @@ impl Structure {
             constraints: NOTHING,
             each_constraint: &[],
             constraint_graph: &[],
-            steady_gram: &[],
             forces: ForceStructure::NONE,
             operations: KernelOperations {
                 constants: NONE,
@@ -120,26 +116,6 @@ impl Structure {
             row += 1;
         }
         true
-    }
-
-    /// Whether the constraints say all of `G M⁻¹ Gᵀ`: it is the same at every configuration on them.
-    pub const fn has_steady_gram(&self) -> bool {
-        // One entry for each constraint by itself, one for each pair that shares a coordinate.
-        !self.steady_gram.is_empty()
-            && self.steady_gram.len() == self.each_constraint.len() + self.constraint_graph.len()
-    }
-
-    /// Whether the entry of `G M⁻¹ Gᵀ` is the same at every configuration on the constraints.
-    pub(crate) const fn is_steady(&self, first: usize, second: usize) -> bool {
-        let (row, col) = if first < second { (second, first) } else { (first, second) };
-        let mut k = 0;
-        while k < self.steady_gram.len() {
-            if self.steady_gram[k].row == row && self.steady_gram[k].col == col {
-                return true;
-            }
-            k += 1;
-        }
-        false
     }
 
     /// Whether neither `L` nor `φ` nor a force depends on time.

@@ -13,7 +13,6 @@ macro_rules! unfolded_scene_of_inner {
         const STRUCTURE: $crate::system::Structure = $crate::system::Structure {
             lagrangian: $crate::system::Dependence { on_t: true, ..S::STRUCTURE.lagrangian },
             mass: $crate::system::Dependence { on_t: true, ..S::STRUCTURE.mass },
-            steady_gram: &[],
             ..S::STRUCTURE
         };
         const REPORT: $crate::system::SystemReport =

@@ -89,7 +89,6 @@ pub(super) fn elimination_type(name: &Ident, elimination: &Elimination) -> Token
     });
     quote! {
         #[doc(hidden)]
-        #[derive(::core::clone::Clone)]
         pub struct #name {
             e: [f64; #n_entries],
         }

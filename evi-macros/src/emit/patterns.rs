@@ -8,7 +8,7 @@ use crate::structure::{Entry, EntryValue, Structure};
 /// Beyond so many calls a loop takes their place: the trait's default.
 const LARGEST_UNROLLED: usize = 500;
 
-/// `for_each_slope`, `for_each_slope_pair`, `for_each_steady_entry`, `for_each_unsteady_pair`, `for_each_gram_product`, `for_each_vv` and `for_each_qq`.
+/// `for_each_slope`, `for_each_slope_pair`, `for_each_gram_product`, `for_each_vv` and `for_each_qq`.
 pub(super) fn loops(structure: &Structure) -> TokenStream {
     let slopes = slopes(structure);
     let vv = symmetric("for_each_vv", &structure.hessian_vv);
@@ -35,41 +35,10 @@ fn slopes(structure: &Structure) -> TokenStream {
         let (Entry { row, col, .. }, slope) = (entry, value(entry, &quote!(g)));
         quote!(visit(#row, #col, #slope);)
     });
-    let visit_pair = |(entry, other): &(&Entry, &Entry)| {
+    let pairs = pairs.iter().map(|(entry, other)| {
         let (Entry { row, col, .. }, slope, other) = (entry, value(entry, &quote!(g)), other.row);
         quote!(visit(#row, #other, #col, #slope);)
-    };
-    let is_steady = |first: usize, second: usize| {
-        let (row, col) = (first.max(second), first.min(second));
-        structure.steady_gram.iter().any(|entry| (entry.row, entry.col) == (row, col))
-    };
-    let unsteady_pairs =
-        pairs.iter().filter(|(entry, other)| !is_steady(entry.row, other.row)).map(visit_pair);
-    let steady_entries = structure.steady_gram.iter().map(|entry| {
-        let (Entry { row, col, .. }, value) = (entry, value(entry, &quote!(g)));
-        quote!(visit(#row, #col, #value);)
     });
-    let steady = (!structure.steady_gram.is_empty()).then(|| {
-        quote! {
-            #[inline(always)]
-            fn for_each_steady_entry<T: ::core::marker::Copy>(
-                c: &Self::PerConstant<T>,
-                mut visit: impl ::core::ops::FnMut(usize, usize, T),
-            ) {
-                #(#steady_entries)*
-            }
-
-            #[inline(always)]
-            fn for_each_unsteady_pair<T: ::core::marker::Copy>(
-                c: &Self::PerConstant<T>,
-                g: &Self::PerJacobianEntry<T>,
-                mut visit: impl ::core::ops::FnMut(usize, usize, usize, T),
-            ) {
-                #(#unsteady_pairs)*
-            }
-        }
-    });
-    let pairs = pairs.iter().map(visit_pair);
     quote! {
         #[inline(always)]
         fn for_each_slope<T: ::core::marker::Copy>(
@@ -88,8 +57,6 @@ fn slopes(structure: &Structure) -> TokenStream {
         ) {
             #(#pairs)*
         }
-
-        #steady
 
         #[inline(always)]
         fn for_each_gram_product<T: ::core::marker::Copy>(

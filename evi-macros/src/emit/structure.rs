@@ -14,7 +14,6 @@ pub(super) fn structure(programs: &Programs) -> TokenStream {
     let (qq, vq) = (entries(&known.hessian_qq), entries(&known.hessian_vq));
     let (vv, vt) = (entries(&known.hessian_vv), entries(&known.hessian_vt));
     let (jacobian_q, jacobian_t) = (entries(&known.jacobian_q), entries(&known.jacobian_t));
-    let steady_gram = entries(&known.steady_gram);
     let classification = &known.classification;
     let (block_qq, block_vq) = (block(classification.qq), block(classification.vq));
     let (block_vv, block_vt) = (block(classification.vv), block(classification.vt));
@@ -52,7 +51,6 @@ pub(super) fn structure(programs: &Programs) -> TokenStream {
             constraints: #constraint_dependence,
             each_constraint: &[#(#each_constraint),*],
             constraint_graph: &[#(#constraint_graph),*],
-            steady_gram: #steady_gram,
             forces: #forces,
             operations: ::evi_core::__private::KernelOperations {
                 constants: #constants,

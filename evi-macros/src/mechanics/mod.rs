@@ -3,8 +3,6 @@
 //! In: a [`Model`]. Out: [`Equations`], every derivative that the integrators evaluate, simplified; entries that vanish
 //! structurally are absent.
 
-mod steady_gram;
-
 use crate::differentiate::{partial, rate};
 use crate::expr::{ExprId, Graph, Symbol, substitute};
 use crate::model::{Forces, Model, Named};
@@ -41,9 +39,6 @@ pub(crate) struct Equations {
     pub(crate) observables: Vec<ExprId>,
     /// `∂L/∂q` and `∂L/∂v` at `v = 0`; no kernel evaluates them.
     pub(crate) at_rest: AtRest,
-    /// Entries of `G M⁻¹ Gᵀ`, lower triangle, that are the same at every configuration on the constraints; empty until
-    /// [`find_steady_gram`](Equations::find_steady_gram) is called.
-    pub(crate) steady_gram: Vec<Partial>,
 }
 
 /// Forces beside those of `L`, and their derivatives; all empty where every force vanishes.
@@ -98,7 +93,6 @@ pub(crate) fn differentiate_equations(graph: &mut Graph, model: &Model) -> Equat
         frequencies: Vec::new(),
         observables: Vec::new(),
         at_rest: AtRest { force: Vec::new(), momentum: Vec::new() },
-        steady_gram: Vec::new(),
     };
     equations.forces = calculus.forces(&model.forces, n);
     equations.frequencies = calculus.frequencies(&model.frequencies, n);
@@ -108,14 +102,6 @@ pub(crate) fn differentiate_equations(graph: &mut Graph, model: &Model) -> Equat
     equations.at_rest =
         AtRest { force: calculus.at_rest(&equations.force), momentum: calculus.at_rest(&equations.momentum) };
     equations
-}
-
-impl Equations {
-    /// Finds out what the constraints say of `G M⁻¹ Gᵀ`, where these are the equations of a whole scene.
-    pub(crate) fn find_steady_gram(&mut self, graph: &mut Graph) {
-        let mut calculus = Calculus { graph, simplifier: Simplifier::default() };
-        self.steady_gram = steady_gram::steady_gram(&mut calculus, self);
-    }
 }
 
 fn is_lower(row: usize, col: usize) -> bool {

@@ -1,5 +1,5 @@
 // operations               + -   *   / f()
-// constants                  1  12   2   0
+// constants                  0   6   0   0
 // lagrangian                 5   9   0   0
 // lagrangian_gradient        0   4   0   0
 // lagrangian_derivatives     0   4   0   0
@@ -9,7 +9,6 @@
 
 const _: () = {
     #[doc(hidden)]
-    #[derive(::core::clone::Clone)]
     pub struct KktElimination {
         e: [f64; 20usize],
     }
@@ -115,7 +114,6 @@ const _: () = {
         }
     }
     #[doc(hidden)]
-    #[derive(::core::clone::Clone)]
     pub struct MassElimination {
         e: [f64; 4usize],
     }
@@ -265,24 +263,12 @@ const _: () = {
                 },
             ],
             constraint_graph: &[(0usize, 1usize)],
-            steady_gram: &[
-                ::evi_core::__private::Entry {
-                    row: 0usize,
-                    col: 0usize,
-                    value: ::evi_core::__private::EntryValue::Constant(2usize),
-                },
-                ::evi_core::__private::Entry {
-                    row: 1usize,
-                    col: 1usize,
-                    value: ::evi_core::__private::EntryValue::Constant(3usize),
-                },
-            ],
             forces: ::evi_core::__private::ForceStructure::NONE,
             operations: ::evi_core::__private::KernelOperations {
                 constants: ::evi_core::__private::Operations {
-                    additions: 1usize,
-                    multiplications: 12usize,
-                    divisions: 2usize,
+                    additions: 0usize,
+                    multiplications: 6usize,
+                    divisions: 0usize,
                     functions: 0usize,
                 },
                 lagrangian: ::evi_core::__private::Operations {
@@ -392,13 +378,13 @@ const _: () = {
                 ::evi_core::__private::KernelReport {
                     name: "constants",
                     operations: ::evi_core::__private::Operations {
-                        additions: 1usize,
-                        multiplications: 12usize,
-                        divisions: 2usize,
+                        additions: 0usize,
+                        multiplications: 6usize,
+                        divisions: 0usize,
                         functions: 0usize,
                     },
-                    temporaries: 1usize,
-                    statements: 9usize,
+                    temporaries: 0usize,
+                    statements: 6usize,
                 },
                 ::evi_core::__private::KernelReport {
                     name: "lagrangian",
@@ -472,7 +458,7 @@ const _: () = {
         type PerConstraint<X: ::core::clone::Clone> = [X; 2usize];
         type PerUnknown<X: ::core::clone::Clone> = [X; 6usize];
         type PerParameter<X: ::core::clone::Clone> = [X; 5usize];
-        type PerConstant<X: ::core::clone::Clone> = [X; 11usize];
+        type PerConstant<X: ::core::clone::Clone> = [X; 9usize];
         type PerHessianEntry<X: ::core::clone::Clone> = [X; 0usize];
         type PerJacobianEntry<X: ::core::clone::Clone> = [X; 6usize];
         type PerInput<X: ::core::clone::Clone> = [X; 0usize];
@@ -496,13 +482,7 @@ const _: () = {
             let x3 = -(p[1usize] * p[4usize]);
             let x4 = p[2usize] * p[2usize];
             let x5 = p[3usize] * p[3usize];
-            let x6 = T::from_f64(1.0) / p[0usize];
-            let x7 = T::from_f64(4.0) * (x4 * x6);
-            let x8 = T::from_f64(0.5)
-                * (x5
-                    * ((x6 * T::from_f64(8.0))
-                        + ((T::from_f64(1.0) / p[1usize]) * T::from_f64(8.0))));
-            [p[0usize], p[1usize], x7, x8, x0, x1, p[4usize], x2, x3, x4, x5]
+            [p[0usize], p[1usize], x0, x1, p[4usize], x2, x3, x4, x5]
         }
         #[inline]
         fn lagrangian<T: ::evi_core::__private::Scalar>(
@@ -511,9 +491,9 @@ const _: () = {
             q: &Self::PerCoordinate<T>,
             v: &Self::PerCoordinate<T>,
         ) -> T {
-            let x0 = ((c[4usize] * ((v[0usize] * v[0usize]) + (v[1usize] * v[1usize])))
-                + (c[5usize] * ((v[2usize] * v[2usize]) + (v[3usize] * v[3usize]))))
-                - (c[6usize] * ((c[0usize] * q[1usize]) + (c[1usize] * q[3usize])));
+            let x0 = ((c[2usize] * ((v[0usize] * v[0usize]) + (v[1usize] * v[1usize])))
+                + (c[3usize] * ((v[2usize] * v[2usize]) + (v[3usize] * v[3usize]))))
+                - (c[4usize] * ((c[0usize] * q[1usize]) + (c[1usize] * q[3usize])));
             x0
         }
         #[inline(always)]
@@ -528,7 +508,7 @@ const _: () = {
             let x2 = c[1usize] * v[2usize];
             let x3 = c[1usize] * v[3usize];
             ::evi_core::__private::LagrangianGradient {
-                force: [T::from_f64(0.0), c[7usize], T::from_f64(0.0), c[8usize]],
+                force: [T::from_f64(0.0), c[5usize], T::from_f64(0.0), c[6usize]],
                 momentum: [x0, x1, x2, x3],
             }
         }
@@ -548,7 +528,7 @@ const _: () = {
             let x3 = c[1usize] * v[3usize];
             (
                 ::evi_core::__private::LagrangianGradient {
-                    force: [T::from_f64(0.0), c[7usize], T::from_f64(0.0), c[8usize]],
+                    force: [T::from_f64(0.0), c[5usize], T::from_f64(0.0), c[6usize]],
                     momentum: [x0, x1, x2, x3],
                 },
                 [],
@@ -562,8 +542,8 @@ const _: () = {
         ) -> Self::PerConstraint<T> {
             let x0 = q[2usize] - q[0usize];
             let x1 = q[3usize] - q[1usize];
-            let x2 = ((q[0usize] * q[0usize]) + (q[1usize] * q[1usize])) - c[9usize];
-            let x3 = ((x0 * x0) + (x1 * x1)) - c[10usize];
+            let x2 = ((q[0usize] * q[0usize]) + (q[1usize] * q[1usize])) - c[7usize];
+            let x3 = ((x0 * x0) + (x1 * x1)) - c[8usize];
             [x2, x3]
         }
         #[inline(always)]
@@ -574,8 +554,8 @@ const _: () = {
         ) -> (Self::PerConstraint<T>, Self::PerJacobianEntry<T>) {
             let x0 = q[2usize] - q[0usize];
             let x1 = q[3usize] - q[1usize];
-            let x2 = ((q[0usize] * q[0usize]) + (q[1usize] * q[1usize])) - c[9usize];
-            let x3 = ((x0 * x0) + (x1 * x1)) - c[10usize];
+            let x2 = ((q[0usize] * q[0usize]) + (q[1usize] * q[1usize])) - c[7usize];
+            let x3 = ((x0 * x0) + (x1 * x1)) - c[8usize];
             let x4 = q[0usize] * T::from_f64(2.0);
             let x5 = q[1usize] * T::from_f64(2.0);
             let x6 = x0 * T::from_f64(2.0);
@@ -627,25 +607,6 @@ const _: () = {
             visit(1usize, 1usize, 1usize, g[3usize]);
             visit(1usize, 1usize, 2usize, g[4usize]);
             visit(1usize, 1usize, 3usize, g[5usize]);
-        }
-        #[inline(always)]
-        fn for_each_steady_entry<T: ::core::marker::Copy>(
-            c: &Self::PerConstant<T>,
-            mut visit: impl ::core::ops::FnMut(usize, usize, T),
-        ) {
-            visit(0usize, 0usize, c[2usize]);
-            visit(1usize, 1usize, c[3usize]);
-        }
-        #[inline(always)]
-        fn for_each_unsteady_pair<T: ::core::marker::Copy>(
-            c: &Self::PerConstant<T>,
-            g: &Self::PerJacobianEntry<T>,
-            mut visit: impl ::core::ops::FnMut(usize, usize, usize, T),
-        ) {
-            visit(0usize, 1usize, 0usize, g[0usize]);
-            visit(0usize, 1usize, 1usize, g[1usize]);
-            visit(1usize, 0usize, 0usize, g[2usize]);
-            visit(1usize, 0usize, 1usize, g[3usize]);
         }
         #[inline(always)]
         fn for_each_gram_product<T: ::core::marker::Copy>(

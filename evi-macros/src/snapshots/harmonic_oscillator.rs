@@ -63,7 +63,6 @@ const _: () = {
             },
             each_constraint: &[],
             constraint_graph: &[],
-            steady_gram: &[],
             forces: ::evi_core::__private::ForceStructure::NONE,
             operations: ::evi_core::__private::KernelOperations {
                 constants: ::evi_core::__private::Operations {

@@ -73,7 +73,6 @@ const _: () = {
             },
             each_constraint: &[],
             constraint_graph: &[],
-            steady_gram: &[],
             forces: ::evi_core::__private::ForceStructure {
                 forced: &[0usize, 1usize],
                 q: &[

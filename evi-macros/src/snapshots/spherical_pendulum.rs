@@ -1,5 +1,5 @@
 // operations               + -   *   / f()
-// constants                  0   5   1   0
+// constants                  0   3   0   0
 // lagrangian                 3   5   0   0
 // lagrangian_gradient        0   3   0   0
 // lagrangian_derivatives     0   3   0   0
@@ -9,7 +9,6 @@
 
 const _: () = {
     #[doc(hidden)]
-    #[derive(::core::clone::Clone)]
     pub struct KktElimination {
         e: [f64; 10usize],
     }
@@ -69,7 +68,6 @@ const _: () = {
         }
     }
     #[doc(hidden)]
-    #[derive(::core::clone::Clone)]
     pub struct MassElimination {
         e: [f64; 3usize],
     }
@@ -185,19 +183,12 @@ const _: () = {
                 },
             ],
             constraint_graph: &[],
-            steady_gram: &[
-                ::evi_core::__private::Entry {
-                    row: 0usize,
-                    col: 0usize,
-                    value: ::evi_core::__private::EntryValue::Constant(1usize),
-                },
-            ],
             forces: ::evi_core::__private::ForceStructure::NONE,
             operations: ::evi_core::__private::KernelOperations {
                 constants: ::evi_core::__private::Operations {
                     additions: 0usize,
-                    multiplications: 5usize,
-                    divisions: 1usize,
+                    multiplications: 3usize,
+                    divisions: 0usize,
                     functions: 0usize,
                 },
                 lagrangian: ::evi_core::__private::Operations {
@@ -297,12 +288,12 @@ const _: () = {
                     name: "constants",
                     operations: ::evi_core::__private::Operations {
                         additions: 0usize,
-                        multiplications: 5usize,
-                        divisions: 1usize,
+                        multiplications: 3usize,
+                        divisions: 0usize,
                         functions: 0usize,
                     },
                     temporaries: 0usize,
-                    statements: 5usize,
+                    statements: 4usize,
                 },
                 ::evi_core::__private::KernelReport {
                     name: "lagrangian",
@@ -376,7 +367,7 @@ const _: () = {
         type PerConstraint<X: ::core::clone::Clone> = [X; 1usize];
         type PerUnknown<X: ::core::clone::Clone> = [X; 4usize];
         type PerParameter<X: ::core::clone::Clone> = [X; 3usize];
-        type PerConstant<X: ::core::clone::Clone> = [X; 6usize];
+        type PerConstant<X: ::core::clone::Clone> = [X; 5usize];
         type PerHessianEntry<X: ::core::clone::Clone> = [X; 0usize];
         type PerJacobianEntry<X: ::core::clone::Clone> = [X; 3usize];
         type PerInput<X: ::core::clone::Clone> = [X; 0usize];
@@ -398,8 +389,7 @@ const _: () = {
             let x1 = p[0usize] * p[2usize];
             let x2 = -x1;
             let x3 = p[1usize] * p[1usize];
-            let x4 = T::from_f64(4.0) * (x3 * (T::from_f64(1.0) / p[0usize]));
-            [p[0usize], x4, x0, x1, x2, x3]
+            [p[0usize], x0, x1, x2, x3]
         }
         #[inline]
         fn lagrangian<T: ::evi_core::__private::Scalar>(
@@ -408,9 +398,9 @@ const _: () = {
             q: &Self::PerCoordinate<T>,
             v: &Self::PerCoordinate<T>,
         ) -> T {
-            let x0 = (c[2usize]
+            let x0 = (c[1usize]
                 * (((v[0usize] * v[0usize]) + (v[1usize] * v[1usize]))
-                    + (v[2usize] * v[2usize]))) - (c[3usize] * q[2usize]);
+                    + (v[2usize] * v[2usize]))) - (c[2usize] * q[2usize]);
             x0
         }
         #[inline(always)]
@@ -424,7 +414,7 @@ const _: () = {
             let x1 = c[0usize] * v[1usize];
             let x2 = c[0usize] * v[2usize];
             ::evi_core::__private::LagrangianGradient {
-                force: [T::from_f64(0.0), T::from_f64(0.0), c[4usize]],
+                force: [T::from_f64(0.0), T::from_f64(0.0), c[3usize]],
                 momentum: [x0, x1, x2],
             }
         }
@@ -443,7 +433,7 @@ const _: () = {
             let x2 = c[0usize] * v[2usize];
             (
                 ::evi_core::__private::LagrangianGradient {
-                    force: [T::from_f64(0.0), T::from_f64(0.0), c[4usize]],
+                    force: [T::from_f64(0.0), T::from_f64(0.0), c[3usize]],
                     momentum: [x0, x1, x2],
                 },
                 [],
@@ -456,7 +446,7 @@ const _: () = {
             q: &Self::PerCoordinate<T>,
         ) -> Self::PerConstraint<T> {
             let x0 = (((q[0usize] * q[0usize]) + (q[1usize] * q[1usize]))
-                + (q[2usize] * q[2usize])) - c[5usize];
+                + (q[2usize] * q[2usize])) - c[4usize];
             [x0]
         }
         #[inline(always)]
@@ -466,7 +456,7 @@ const _: () = {
             q: &Self::PerCoordinate<T>,
         ) -> (Self::PerConstraint<T>, Self::PerJacobianEntry<T>) {
             let x0 = (((q[0usize] * q[0usize]) + (q[1usize] * q[1usize]))
-                + (q[2usize] * q[2usize])) - c[5usize];
+                + (q[2usize] * q[2usize])) - c[4usize];
             let x1 = q[0usize] * T::from_f64(2.0);
             let x2 = q[1usize] * T::from_f64(2.0);
             let x3 = q[2usize] * T::from_f64(2.0);
@@ -504,19 +494,6 @@ const _: () = {
             visit(0usize, 0usize, 1usize, g[1usize]);
             visit(0usize, 0usize, 2usize, g[2usize]);
         }
-        #[inline(always)]
-        fn for_each_steady_entry<T: ::core::marker::Copy>(
-            c: &Self::PerConstant<T>,
-            mut visit: impl ::core::ops::FnMut(usize, usize, T),
-        ) {
-            visit(0usize, 0usize, c[1usize]);
-        }
-        #[inline(always)]
-        fn for_each_unsteady_pair<T: ::core::marker::Copy>(
-            c: &Self::PerConstant<T>,
-            g: &Self::PerJacobianEntry<T>,
-            mut visit: impl ::core::ops::FnMut(usize, usize, usize, T),
-        ) {}
         #[inline(always)]
         fn for_each_gram_product<T: ::core::marker::Copy>(
             c: &Self::PerConstant<T>,

@@ -29,8 +29,6 @@ pub(crate) struct Structure {
     pub(crate) jacobian_t: Vec<Entry>,
     pub(crate) force_q: Vec<Entry>,
     pub(crate) force_v: Vec<Entry>,
-    /// Entries of `G M⁻¹ Gᵀ`, lower triangle, that are the same at every configuration on the constraints; all constant.
-    pub(crate) steady_gram: Vec<Entry>,
     /// Coordinates on which a force acts that is no derivative of `L`.
     pub(crate) forced: Vec<usize>,
     /// Entries of matrices that depend on parameters alone; an entry's slot is its index here.
@@ -95,7 +93,6 @@ pub(crate) fn analyze(graph: &Graph, equations: &Equations) -> Structure {
     let mut force_entries = Vec::new();
     let mut force = |partials| places(graph, partials, &mut constant_entries, &mut force_entries);
     let (force_q, force_v) = (force(&forces.by_q), force(&forces.by_v));
-    let steady_gram = places(graph, &equations.steady_gram, &mut constant_entries, &mut Vec::new());
     let is_forced = |&i: &usize| graph.as_number(forces.values[i]) != Some(0.0);
     Structure {
         hessian_qq,
@@ -106,7 +103,6 @@ pub(crate) fn analyze(graph: &Graph, equations: &Equations) -> Structure {
         jacobian_t,
         force_q,
         force_v,
-        steady_gram,
         forced: (0..forces.values.len()).filter(is_forced).collect(),
         constant_entries,
         hessian_entries,

@@ -16,7 +16,6 @@ mod scheduling;
 mod simplification;
 mod snapshots;
 mod sparsity;
-mod steady_gram;
 mod systems;
 mod vectors;
 mod workbench;

@@ -53,8 +53,7 @@ pub(super) struct Compiled {
 pub(super) fn compiled(source: &str) -> Compiled {
     let mut graph = Graph::default();
     let model = resolved(source, &mut graph);
-    let mut equations = mechanics::differentiate_equations(&mut graph, &model);
-    equations.find_steady_gram(&mut graph);
+    let equations = mechanics::differentiate_equations(&mut graph, &model);
     let structure = structure::analyze(&graph, &equations);
     let programs = schedule::schedule(&graph, &equations, structure);
     graph.verify();
