@@ -15,8 +15,12 @@ use crate::scalar::{InstructionSet, Lanes};
 use crate::scheme::PAST;
 use crate::system::MechanicalSystem;
 
-/// Ends are on the constraints and on the hidden ones to round-off. What is farther beside them than this share of their terms has been projected
-/// with a matrix that does not determine it, as of masses whose ratio is no number.
+/// Ends are on the constraints to round-off, by passes that stop early nearly so. What is farther beside them than this share of their terms belongs to passes that
+/// have seen a part of the motion only, as of masses whose ratio is no number: in the metric of the heavy one the light one has no displacements.
+const OFF: f64 = 1e-12;
+const OFF_IF_ROUGH: f64 = 1e-6;
+/// Ends are on the hidden constraints to round-off, where these are nearly dependent less so. What is farther beside them than this share has been projected with a
+/// matrix that does not determine it.
 const BESIDE: f64 = 1e-3;
 /// Velocities that leave the constraints by more than this share are projected once more: the matrix is that of the end before its last displacement, which
 /// in a motion that diverges is long.
@@ -160,9 +164,10 @@ impl<S: MechanicalSystem, const K: usize> NodePasses<S> for LanePasses<S, K> {
             (v, momentum) = legendre.project(mechanics, &gram, &jacobian, &unexpected, momentum);
             rate = leaving(&v);
         }
-        for beside in [mechanics.share_beside(&jacobian, &reach, &left), rate] {
+        let off = if self.tolerance > ROUGH { OFF_IF_ROUGH } else { OFF };
+        for (beside, most) in [(mechanics.share_beside(&jacobian, &reach, &left), off), (rate, BESIDE)] {
             // Written so that a NaN is refused.
-            let is_on_constraints = beside <= BESIDE;
+            let is_on_constraints = beside <= most;
             if !is_on_constraints {
                 let cause = ProjectionError::NotConverged { corrections: 1, last_correction: beside };
                 return Err(StepError::Projection { t, cause });
