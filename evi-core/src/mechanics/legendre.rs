@@ -90,12 +90,7 @@ impl<S: MechanicalSystem> ConstantLegendre<S> {
         jacobian: &S::PerJacobianEntry<f64>,
         tally: &mut impl Tally,
     ) -> Result<S::GramFactors, SingularMatrix> {
-        let matrix = self.gram(mechanics, jacobian, tally);
-        let gram = S::GramFactors::factor_of_any_size(&matrix)?;
-        if gram.is_fallback() {
-            tally.count_fallback();
-        }
-        Ok(gram)
+        self.factored_gram(mechanics, jacobian, tally, S::GramFactors::factor_of_any_size)
     }
 
     /// The same for a step that takes another way where products of masses leave the numbers.
@@ -109,26 +104,26 @@ impl<S: MechanicalSystem> ConstantLegendre<S> {
         jacobian: &S::PerJacobianEntry<f64>,
         tally: &mut impl Tally,
     ) -> Result<S::GramFactors, SingularMatrix> {
-        let matrix = self.gram(mechanics, jacobian, tally);
-        let gram = S::GramFactors::factor(&matrix)?;
-        if gram.is_fallback() {
-            tally.count_fallback();
-        }
-        Ok(gram)
+        self.factored_gram(mechanics, jacobian, tally, S::GramFactors::factor)
     }
 
-    /// `G M⁻¹ Gᵀ`.
+    /// `G M⁻¹ Gᵀ`, as `factor` factors it.
     #[inline(always)]
-    fn gram(
+    fn factored_gram(
         &self,
         mechanics: &Mechanics<S>,
         jacobian: &S::PerJacobianEntry<f64>,
         tally: &mut impl Tally,
-    ) -> Gram<S> {
+        factor: impl FnOnce(&Gram<S>) -> Result<S::GramFactors, SingularMatrix>,
+    ) -> Result<S::GramFactors, SingularMatrix> {
         let directions = mechanics.constraint_directions(jacobian, &self.inverse_mass);
         let matrix = mechanics.gram_matrix::<AsMass>(jacobian, &directions);
         tally.see_matrix(|| gram_conditioning::<S>(&matrix));
-        matrix
+        let gram = factor(&matrix)?;
+        if gram.is_fallback() {
+            tally.count_fallback();
+        }
+        Ok(gram)
     }
 
     /// Removes from the `momentum` the impulse `Gᵀ N` that leaves the constraints, `G M⁻¹ Gᵀ N = G v + ∂φ/∂t`, with the
