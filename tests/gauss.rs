@@ -69,6 +69,29 @@ mod agreement {
         let moving = KapitzaPendulumInAngle::of(KapitzaPendulum::STANDARD);
         check::<_, 5, 1>(moving, Start { q: [3.0], v: [0.2] }, 0.002);
     }
+
+    /// A plane in coordinates of which one is along the light cone: its mass matrix is indefinite, with a zero on the diagonal.
+    #[derive(MechanicalSystem, Clone)]
+    #[evi(
+        coordinates(x, y),
+        kinetic = 0.5 * a * der(x).powi(2) + c * der(x) * der(y),
+        potential = 0.0,
+        force(x: k * y.sin()),
+        force(y: g),
+    )]
+    struct LightCone {
+        a: f64,
+        c: f64,
+        k: f64,
+        g: f64,
+    }
+
+    /// `x` is known at once, and only `y` takes several passes: its change has a length, though not in the metric of the mass matrix.
+    #[test]
+    fn indefinite_mass() {
+        let plane = LightCone { a: 0.2, c: 0.06, k: 0.3, g: -0.4 };
+        check::<_, 2, 2>(plane, Start { q: [0.4, -2.0], v: [-1.0, 2.0] }, 0.06);
+    }
 }
 
 mod kept {

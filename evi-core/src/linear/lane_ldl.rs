@@ -75,6 +75,12 @@ impl<V: Array<Lanes>, M: Array<V>, F: Array<usize>> LaneLdl<V, M, F> {
     /// Overwrites the matrix with its factors.
     #[inline(always)]
     pub(crate) fn factor<const FUSED: bool>(&mut self) {
+        self.factor_showing::<FUSED>(|_, _| {});
+    }
+
+    /// The same, and shows the entries of `D`, `(row, entry)`.
+    #[inline(always)]
+    fn factor_showing<const FUSED: bool>(&mut self, mut pivot_of: impl FnMut(usize, Lanes)) {
         for row in 0..V::LEN {
             let start = self.first(row);
             for col in start..row {
@@ -91,6 +97,7 @@ impl<V: Array<Lanes>, M: Array<V>, F: Array<usize>> LaneLdl<V, M, F> {
                 pivot = (-multiplier).times_plus::<FUSED>(entry, pivot);
                 self.rows[row][col] = multiplier;
             }
+            pivot_of(row, pivot);
             self.rows[row][row] = Lanes::splat(1.0) / pivot;
         }
     }
@@ -113,7 +120,10 @@ impl<V: Array<Lanes>, M: Array<V>, F: Array<usize>> LaneLdl<V, M, F> {
         }
     }
 }
-/// Overwrites `mass` with the factors of the mass matrices of eight nodes, and returns the magnitudes of their diagonals.
+/// Overwrites `mass` with the factors of the mass matrices of eight nodes, and returns a metric of motions.
+///
+/// Of a positive definite mass it is the diagonal, none of which is smaller than its entry of `D`. On the diagonal of an indefinite one, as of a spacetime, there may be a zero: motions
+/// along that coordinate would have no length.
 #[inline(always)]
 pub(crate) fn factor_mass<S: MechanicalSystem, const FUSED: bool>(
     mass: &mut LaneMass<S>,
@@ -135,6 +145,9 @@ pub(crate) fn factor_mass<S: MechanicalSystem, const FUSED: bool>(
             }
         },
     );
-    mass.factor::<FUSED>();
+    mass.factor_showing::<FUSED>(
+        #[inline(always)]
+        |row, pivot| inertia[row] = inertia[row].larger(Scalar::abs(pivot)),
+    );
     inertia
 }

@@ -127,6 +127,7 @@ impl<S: MechanicalSystem, const K: usize> PointPasses<S, K> {
         // What the velocities do not know of yet.
         let mut moves: Nodes<S> = nothing();
         let mut jacobian: S::PerJacobianEntry<Lanes> = nothing();
+        let mut inertia: Nodes<S> = nothing();
         let mut per_reach = 0.0;
         let mut progress = LinearProgress::default();
         let (mut is_stale, mut is_last) = (true, false);
@@ -137,7 +138,7 @@ impl<S: MechanicalSystem, const K: usize> PointPasses<S, K> {
             let mut squares = Lanes::ZERO;
             let mut shares: NodeMultipliers<S> = nothing();
             if is_stale {
-                let inertia = self.factor_mass::<FUSED>(times, &q, &velocities);
+                inertia = self.factor_mass::<FUSED>(times, &q, &velocities);
                 per_reach = 1.0 / Self::reach(&inertia, &q, &differences);
                 if Self::IS_CONSTRAINED {
                     (shares, jacobian) = S::constraint_derivatives(&self.constants, times, &q);
@@ -190,14 +191,14 @@ impl<S: MechanicalSystem, const K: usize> PointPasses<S, K> {
                 let of_start = self.tables.start_momentum.times_plus::<FUSED>(start_missing, of_forces);
                 residual[i] = product::<K, FUSED>(&self.tables.momenta, missing, of_start);
             }
-            moves = residual.clone();
+            moves = residual;
             self.mass.solve::<FUSED>(&mut moves);
-            let mut work = Lanes::ZERO;
+            let mut squares_of_moves = Lanes::ZERO;
             for i in 0..n {
-                work = residual[i].times_plus::<FUSED>(moves[i], work);
+                squares_of_moves = (inertia[i] * moves[i]).times_plus::<FUSED>(moves[i], squares_of_moves);
                 differences[i] = differences[i] + moves[i];
             }
-            let square = (Scalar::abs(squares) + Scalar::abs(work)).largest();
+            let square = (Scalar::abs(squares) + squares_of_moves).largest();
             let square = square * per_reach * per_reach;
             is_stale = square > STALE * STALE;
             // Then once more, for the forces where the points have come to.
@@ -228,7 +229,7 @@ impl<S: MechanicalSystem, const K: usize> PointPasses<S, K> {
         }
     }
 
-    /// Factors the mass matrices, and returns the magnitudes of their diagonals.
+    /// Factors the mass matrices, and returns a metric of motions.
     #[inline(always)]
     fn factor_mass<const FUSED: bool>(&mut self, times: Lanes, q: &Nodes<S>, v: &Nodes<S>) -> Nodes<S> {
         let (_, hessian) = S::lagrangian_derivatives(&self.constants, times, q, v);
@@ -329,7 +330,7 @@ impl<S: MechanicalSystem, const K: usize> PointPasses<S, K> {
         AtNodes { momenta: momentum, forces: force, start_momentum: at_start.momentum, end_force }
     }
 
-    /// What a step is found to the round-off of, in the metric of the diagonal of the mass matrix.
+    /// What a step is found to the round-off of, in the metric of `inertia`.
     #[inline(always)]
     fn reach(inertia: &Nodes<S>, q: &Nodes<S>, differences: &Nodes<S>) -> f64 {
         let (mut here, mut way) = (Lanes::ZERO, Lanes::ZERO);
