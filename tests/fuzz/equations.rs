@@ -19,8 +19,27 @@ pub(crate) struct Snapshot {
     pub(crate) p: Vec<f64>,
 }
 
-/// Displacements are so many roundings: far above one, far below the curvature of anything.
-const ROUNDINGS: f64 = 1e3;
+/// Displacements are so many roundings: far above one, far below the curvature of anything. The longer ones are for where a slope vanishes, but not the
+/// round-off of its terms.
+const ROUNDINGS: [f64; 2] = [1e3, 1e6];
+
+/// Something beside a state, by so many roundings.
+struct Displaced<T> {
+    roundings: f64,
+    to: T,
+}
+
+impl<T> Displaced<T> {
+    fn map<U>(self, f: impl FnOnce(T) -> U) -> Displaced<U> {
+        Displaced { roundings: self.roundings, to: f(self.to) }
+    }
+}
+
+impl<T> Displaced<Option<T>> {
+    fn known(self) -> Option<Displaced<T>> {
+        Some(Displaced { roundings: self.roundings, to: self.to? })
+    }
+}
 
 impl Snapshot {
     pub(crate) fn of(solver: &dyn Solver) -> Self {
@@ -33,28 +52,33 @@ impl Snapshot {
     }
 
     /// The states beside this one, for velocities of this size.
-    fn displaced(&self, speed: f64) -> Vec<Self> {
+    fn displaced(&self, speed: f64) -> Vec<Displaced<Self>> {
         let mut displaced = self.displaced_positions();
-        for i in 0..self.q.len() {
-            for sign in [-1.0, 1.0] {
-                let mut faster = self.clone();
-                faster.v[i] += sign * ROUNDINGS * f64::EPSILON * speed;
-                displaced.push(faster);
+        for roundings in ROUNDINGS {
+            for i in 0..self.q.len() {
+                for sign in [-1.0, 1.0] {
+                    let mut faster = self.clone();
+                    faster.v[i] += sign * roundings * f64::EPSILON * speed;
+                    displaced.push(Displaced { roundings, to: faster });
+                }
             }
         }
         displaced
     }
 
     /// Those at other places, and later.
-    fn displaced_positions(&self) -> Vec<Self> {
-        let by = |size: f64| ROUNDINGS * f64::EPSILON * size;
-        let later = Self { t: self.t * (1.0 + by(1.0)), ..self.clone() };
-        let mut displaced = vec![later];
-        for i in 0..self.q.len() {
-            for sign in [-1.0, 1.0] {
-                let mut moved = self.clone();
-                moved.q[i] += sign * by(largest(&self.q));
-                displaced.push(moved);
+    fn displaced_positions(&self) -> Vec<Displaced<Self>> {
+        let mut displaced = Vec::new();
+        for roundings in ROUNDINGS {
+            let by = |size: f64| roundings * f64::EPSILON * size;
+            let later = Self { t: self.t * (1.0 + by(1.0)), ..self.clone() };
+            displaced.push(Displaced { roundings, to: later });
+            for i in 0..self.q.len() {
+                for sign in [-1.0, 1.0] {
+                    let mut moved = self.clone();
+                    moved.q[i] += sign * by(largest(&self.q));
+                    displaced.push(Displaced { roundings, to: moved });
+                }
             }
         }
         displaced
@@ -62,15 +86,22 @@ impl Snapshot {
 }
 
 /// The largest of `residuals` in units of a rounding, given what they are at displaced states, and how much of each is round-off in any case.
-fn in_roundings(residuals: &[f64], displaced: &[Vec<f64>], in_any_case: f64) -> f64 {
+fn in_roundings(residuals: &[f64], displaced: &[Displaced<Vec<f64>>], in_any_case: f64) -> f64 {
     let ratio = |(i, residual): (usize, &f64)| {
-        let change = |other: &Vec<f64>| (other[i] - residual).abs();
+        let of_one = |other: &Displaced<Vec<f64>>| (other.to[i] - residual).abs() / other.roundings;
         let larger = |a: f64, b: f64| if b <= a || a.is_nan() { a } else { b };
         // A NaN beside the state says that it stands at the rim of what is defined: nothing is known there.
-        let allowed = displaced.iter().map(change).fold(ROUNDINGS * in_any_case, larger);
-        if *residual == 0.0 || allowed.is_nan() { 0.0 } else { ROUNDINGS * residual.abs() / allowed }
+        let allowed = displaced.iter().map(of_one).fold(in_any_case, larger);
+        if *residual == 0.0 || allowed.is_nan() { 0.0 } else { residual.abs() / allowed }
     };
     largest(&residuals.iter().enumerate().map(ratio).collect::<Vec<_>>())
+}
+
+fn around(
+    displaced: Vec<Displaced<Snapshot>>,
+    at: impl Fn(&Snapshot) -> Vec<f64>,
+) -> Vec<Displaced<Vec<f64>>> {
+    displaced.into_iter().map(|state| state.map(|state| at(&state))).collect()
 }
 
 /// How far the end of a step is beside the constraints, the terms of which are of this size.
@@ -80,7 +111,7 @@ pub(crate) fn constraints<S: GenericSystem>(system: &S, end: &Snapshot, terms: f
         system.constraints(state.t, &state.q, &mut residuals);
         residuals
     };
-    in_roundings(&at(end), &end.displaced(0.0).iter().map(at).collect::<Vec<_>>(), f64::EPSILON * terms)
+    in_roundings(&at(end), &around(end.displaced(0.0), at), f64::EPSILON * terms)
 }
 
 /// How far its velocity is beside the hidden constraints, where velocities have the round-off of this speed.
@@ -91,7 +122,7 @@ pub(crate) fn hidden_constraints<S: GenericSystem>(system: &S, end: &Snapshot, s
         system.constraints(Dual64::new(state.t, 1.0), &q, &mut residuals);
         residuals.iter().map(|residual| residual.eps).collect::<Vec<_>>()
     };
-    in_roundings(&at(end), &end.displaced(speed).iter().map(at).collect::<Vec<_>>(), 0.0)
+    in_roundings(&at(end), &around(end.displaced(speed), at), 0.0)
 }
 
 /// What a step is a stationary point of: with forces, what their virtual work is balanced by.
@@ -181,9 +212,11 @@ fn residual<S: GenericSystem>(
     momenta: impl Fn(&Snapshot, &Snapshot) -> Option<[Vec<f64>; 2]>,
 ) -> Option<f64> {
     let here = momenta(before, after)?;
-    let displaced_starts = before.displaced_positions().into_iter().map(|before| momenta(&before, after));
-    let displaced_ends = after.displaced_positions().into_iter().map(|after| momenta(before, &after));
-    let displaced = displaced_starts.chain(displaced_ends).collect::<Option<Vec<_>>>()?;
+    let starts =
+        before.displaced_positions().into_iter().map(|state| state.map(|start| momenta(&start, after)));
+    let ends = after.displaced_positions().into_iter().map(|state| state.map(|end| momenta(before, &end)));
+    let displaced =
+        starts.chain(ends).map(Displaced::known).collect::<Option<Vec<Displaced<[Vec<f64>; 2]>>>>()?;
     let of_end = |(slot, end): (usize, &Snapshot)| {
         let normals = normals(system, end);
         let left = |momenta: &[Vec<f64>; 2]| -> Vec<f64> {
@@ -191,8 +224,10 @@ fn residual<S: GenericSystem>(
         };
         let whole = left(&here);
         let in_any_case = f64::EPSILON * largest(&whole).max(largest(&end.p));
-        let displaced: Vec<Vec<f64>> =
-            displaced.iter().map(|there| tangential(left(there), &normals)).collect();
+        let displaced: Vec<Displaced<Vec<f64>>> = displaced
+            .iter()
+            .map(|there| Displaced { roundings: there.roundings, to: tangential(left(&there.to), &normals) })
+            .collect();
         in_roundings(&tangential(whole, &normals), &displaced, in_any_case)
     };
     Some([(0, before), (1, after)].into_iter().map(of_end).fold(0.0, f64::max))
