@@ -8,6 +8,7 @@ use evi_examples::{DoublePendulum, StiffSpringPendulum};
 use evi_tests::largest_difference;
 
 mod axes;
+mod company;
 
 const STEPS: u32 = 200;
 /// Step size in seconds.

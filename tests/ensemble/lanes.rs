@@ -192,6 +192,17 @@ fn company_changes_no_bit_of_midpoint_steps() {
 #[test]
 fn company_changes_no_bit_of_galerkin_steps() {
     check_company(Galerkin::<4>::new(0.1), &pendulums(COUNT), 100);
+    // The metric of the masses does not see the second bob of every third one.
+    let light = ByIndex::new(COUNT, |index| {
+        let mut member = pendulum(index);
+        if index % 3 == 0 {
+            member.parameters[1] *= 1e-12;
+        }
+        member
+    });
+    check_company(Galerkin::<4>::new(0.1), &light, 100);
+    let found = difference(Galerkin::<4>::new(0.05), &light, pendulum_alone, 60);
+    assert!(found < 2e-13, "{found:e}");
 }
 
 #[test]

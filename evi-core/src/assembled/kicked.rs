@@ -17,6 +17,7 @@ use super::scene::{ConstantInertia, PreparedScene, Space};
 use super::{AssembledState, failure};
 use crate::integrator::{IterationFailure, StepError, Tally};
 use crate::linear::{SingularMatrix, largest_magnitude};
+use crate::mechanics::Length;
 use crate::memory::memory;
 use crate::newton::Progress;
 
@@ -189,17 +190,18 @@ impl KickedStep {
         pull.copy_from_slice(p);
         subtract_pull::<f64, false>(&assembly.slots, &at_start.slopes, impulse, pull);
         mass.inverse_times(pull, moved);
-        let mut reach = 0.0_f64;
+        let mut reach = Length::default();
         for (i, q) in q.iter_mut().enumerate() {
             let difference = h * moved[i];
             *q = state.q[i] + difference;
-            reach = reach.max(mass.units[i] * (state.q[i].abs() + difference.abs()));
+            reach = reach.with(mass.units[i], state.q[i].abs() + difference.abs());
         }
         if assembly.n_constraints == 0 {
             return Ok(());
         }
         tally.begin_iteration();
-        let per_reach = if reach > 0.0 { 1.0 / reach } else { 0.0 };
+        let (per_reach, least_unit) =
+            if reach.metric > 0.0 { (1.0 / reach.metric, reach.least_unit()) } else { (0.0, 0.0) };
         let mut progress = Progress::default();
         let mut previous = 0.0;
         loop {
@@ -225,7 +227,7 @@ impl KickedStep {
             let mut length = 0.0_f64;
             for ((q, moved), unit) in q.iter_mut().zip(moved.iter()).zip(&mass.units) {
                 *q += moved;
-                let moved = unit * moved.abs();
+                let moved = unit.max(least_unit) * moved.abs();
                 // Written so that a NaN stays.
                 length = if moved <= length { length } else { moved };
             }

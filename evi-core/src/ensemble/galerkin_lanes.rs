@@ -8,10 +8,12 @@ use super::galerkin_passes::{LaneProgress, STALE};
 use super::kicks::LaneLegendre;
 use super::lane_map::{LaneMap, LaneScheme};
 use super::lane_matrix::{LaneLu, Slopes};
+use super::lane_reach::LaneReach;
 use super::lane_state::{LaneState, nothing, side_by_side};
 use super::mask::LaneMask;
 use crate::integrator::{Galerkin, Symmetric};
 use crate::linear::Cholesky;
+use crate::mechanics::reach::has_light;
 use crate::mechanics::{AsMass, ConstantLegendre, Mechanics, State};
 use crate::newton;
 use crate::scalar::{LANES, Lanes, Scalar};
@@ -69,6 +71,8 @@ pub struct GalerkinLanes<S: MechanicalSystem, const K: usize> {
     pub(super) legendre: LaneLegendre<S>,
     /// What a coordinate is multiplied with before lengths are compared.
     pub(super) units: Vector<S>,
+    /// Members that have coordinates that the metric of the masses does not see: 1 for those, 0 for others. None if there are none.
+    pub(super) light: Option<Lanes>,
     /// Of the nodes, and of what they were made.
     pub(super) grams: Vec<LaneLu<S>>,
     pub(super) jacobians: Vec<S::PerJacobianEntry<Lanes>>,
@@ -128,6 +132,7 @@ impl<S: MechanicalSystem, const K: usize> LaneScheme<S> for Galerkin<K, Linear> 
             slopes: Slopes::new(side_by_side(|lane, i| mechanics[lane].constants[i])),
             legendre: LaneLegendre::of(members.map(|member| &member.legendre)),
             units: side_by_side(|lane, i| members[lane].units[i]),
+            light: light(members),
             grams: (0..K).map(|_| LaneLu::new::<AsMass>()).collect(),
             jacobians: vec![nothing(); K],
             gram: LaneLu::new::<AsMass>(),
@@ -141,6 +146,11 @@ impl<S: MechanicalSystem, const K: usize> LaneScheme<S> for Galerkin<K, Linear> 
             squares: [Lanes::ZERO; K],
         }
     }
+}
+
+fn light<S: MechanicalSystem>(members: [&GalerkinMember<S>; LANES]) -> Option<Lanes> {
+    let is_light = members.map(|member| has_light(member.units.as_ref()));
+    is_light.contains(&true).then(|| Lanes::new(is_light.map(|is_light| if is_light { 1.0 } else { 0.0 })))
 }
 
 /// The acceleration of a state, from which passes without a past begin.
@@ -169,14 +179,14 @@ impl<S: MechanicalSystem, const K: usize> LaneMap<S> for GalerkinLanes<S, K> {
     fn advance<const FUSED: bool>(&mut self, state: &mut LaneState<S>, active: LaneMask) -> LaneMask {
         self.predict::<FUSED>();
         self.place::<FUSED>(state, 0);
-        let per_reach = self.per_reach(state);
+        let LaneReach { per_reach, units } = LaneReach::<S>::of(&self.units, self.h, state);
         let mut progress = LaneProgress::of(active, self.tolerance);
         let mut stale = LaneMask::ALL;
         for pass in 0..newton::MAX_CORRECTIONS {
             let is_first = pass == 0;
             // What a lane that is done has a matrix of does not matter.
             let is_all_stale = !progress.pending().without(stale).is_any();
-            let farthest = self.project_points::<FUSED>(state.t, is_first, stale, is_all_stale);
+            let farthest = self.project_points::<FUSED>(state.t, &units, is_first, stale, is_all_stale);
             self.accelerate::<FUSED>(state, is_first, active.without(progress.pending()));
             let length = Scalar::sqrt(farthest) * per_reach;
             stale = LaneMask::below(Lanes::splat(STALE), length).and(progress.pending());

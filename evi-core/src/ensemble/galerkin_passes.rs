@@ -88,12 +88,13 @@ impl<S: MechanicalSystem, const K: usize> GalerkinLanes<S, K> {
         }
     }
 
-    /// Projects the points on the constraints; returns the squares of how far the farthest one has moved, in the metric of the masses.
+    /// Projects the points on the constraints; returns the squares of how far the farthest one has moved, in these units.
     /// Matrices are made anew for the lanes that are `stale`.
     #[inline(always)]
     pub(super) fn project_points<const FUSED: bool>(
         &mut self,
         t: f64,
+        units: &Vector<S>,
         is_first: bool,
         stale: LaneMask,
         is_all_stale: bool,
@@ -105,7 +106,7 @@ impl<S: MechanicalSystem, const K: usize> GalerkinLanes<S, K> {
             let mut square = Lanes::ZERO;
             if Self::FORCE_VARIES && !is_first {
                 for i in 0..S::N_COORDINATES {
-                    let moved = (position[i] - self.nearest[node][i]) * self.units[i];
+                    let moved = (position[i] - self.nearest[node][i]) * units[i];
                     square = moved.times_plus::<FUSED>(moved, square);
                 }
             }
@@ -140,6 +141,12 @@ impl<S: MechanicalSystem, const K: usize> GalerkinLanes<S, K> {
                 let displacement = self.legendre.inverse_mass.times::<FUSED>(&pull);
                 for i in 0..S::N_COORDINATES {
                     nearest[i] = position[i] - displacement[i];
+                }
+                if let Some(light) = self.light {
+                    for i in 0..S::N_COORDINATES {
+                        let displaced = displacement[i] * units[i] * light;
+                        square = displaced.times_plus::<FUSED>(displaced, square);
+                    }
                 }
                 self.shares[node] = shares;
             }
@@ -222,24 +229,5 @@ impl<S: MechanicalSystem, const K: usize> GalerkinLanes<S, K> {
             self.grams[j].solve::<FUSED>(&mut multipliers);
         }
         self.multipliers[j] = multipliers;
-    }
-
-    /// One over what steps from `state` are found to the round-off of, in the metric of the masses: as in `mechanics/lane_step`.
-    #[inline(always)]
-    pub(super) fn per_reach(&self, state: &LaneState<S>) -> Lanes {
-        /// A step of an eighth of the configuration is not short.
-        const LONG: f64 = 8.0;
-        /// Points are sums of a configuration: closer is not to be had.
-        const CLOSEST: f64 = 1.0 / 16.0;
-        let (mut here, mut way) = (Lanes::ZERO, Lanes::ZERO);
-        let h = Lanes::splat(self.h.abs());
-        for i in 0..S::N_COORDINATES {
-            here = (self.units[i] * state.q[i].abs()).larger(here);
-            way = (self.units[i] * h * state.v[i].abs()).larger(way);
-        }
-        let here = here + way;
-        let long = Lanes::splat(LONG) * way;
-        let limited = LaneMask::below(long, here).select(long, here);
-        Lanes::splat(1.0) / limited.larger(Lanes::splat(CLOSEST) * here)
     }
 }

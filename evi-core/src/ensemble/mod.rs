@@ -20,6 +20,7 @@ mod kicks;
 mod lane_kkt;
 mod lane_map;
 mod lane_matrix;
+mod lane_reach;
 mod lane_span;
 mod lane_state;
 mod mask;

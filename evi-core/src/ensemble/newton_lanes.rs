@@ -12,7 +12,7 @@ use super::node_lanes::{Curve, EndMomenta, LaneNode, MemberNode};
 use crate::array::Array;
 use crate::linear::{Cholesky, constraint_index};
 use crate::mechanics::{DiscreteLagrangian, Mechanics, State};
-use crate::newton::{STAGNATION, STAGNATION_RATIO, TARGET};
+use crate::newton::{LIGHT, STAGNATION, STAGNATION_RATIO, TARGET};
 use crate::scalar::{LANES, Lanes, Scalar};
 use crate::scheme::InterpolationTable;
 use crate::system::MechanicalSystem;
@@ -128,19 +128,23 @@ impl<S: MechanicalSystem, const K: usize> NewtonLanes<S, K> {
             }
             self.kkt.factor::<FUSED>();
             self.kkt.solve::<FUSED>(&mut residual);
-            let (mut square, mut reach) = (Lanes::ZERO, Lanes::ZERO);
+            let [mut square, mut reach, mut plain_square, mut plain_reach] = [Lanes::ZERO; 4];
             for i in 0..n {
                 let moved = residual[i] * self.units[i];
                 square = moved.times_plus::<FUSED>(moved, square);
+                plain_square = residual[i].times_plus::<FUSED>(residual[i], plain_square);
                 difference[i] = pending.select(difference[i] - residual[i], difference[i]);
-                let size = (state.q[i].abs() + difference[i].abs()) * self.units[i];
+                let plain = state.q[i].abs() + difference[i].abs();
+                let size = plain * self.units[i];
                 reach = size.times_plus::<FUSED>(size, reach);
+                plain_reach = plain.times_plus::<FUSED>(plain, plain_reach);
             }
             for c in 0..S::N_CONSTRAINTS {
                 let change = residual[constraint_index::<S>(c)];
                 impulse[c] = pending.select(impulse[c] - change, impulse[c]);
             }
-            let relative = square / reach;
+            let light = Lanes::splat(LIGHT * LIGHT) * plain_square / plain_reach;
+            let relative = (square / reach).larger(light);
             pending = pending.without(converged::<FUSED>(relative, previous));
             if !pending.is_any() {
                 break;

@@ -16,7 +16,6 @@ use super::state::GenericState;
 use super::workspace::Workspace;
 use crate::integrator::{IterationFailure, StepError};
 use crate::linear::largest_magnitude;
-use crate::mechanics::relative;
 use crate::newton::{self, Converged, Tally};
 
 /// The stages of a step, with buffers.
@@ -106,8 +105,7 @@ impl EviStages {
             for (impulse, update) in work.impulse.iter_mut().zip(impulses) {
                 *impulse -= update;
             }
-            let scale = work.kkt.scaled_length(&state.q).max(work.kkt.scaled_length(&self.difference));
-            Ok(relative(work.kkt.scaled_length(&work.unknowns), scale))
+            Ok(work.kkt.relative_length(&work.unknowns, [&state.q, &self.difference]))
         });
         match iteration {
             Ok(Converged { corrections }) => {

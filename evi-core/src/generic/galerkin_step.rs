@@ -19,7 +19,7 @@ use super::state::GenericState;
 use super::workspace::Workspace;
 use crate::integrator::{IterationFailure, StepError};
 use crate::linear::{InPlaceLu, largest_magnitude};
-use crate::mechanics::relative;
+use crate::mechanics::Length;
 use crate::newton::{self, Converged, Tally};
 
 /// The unknowns of a step with the tables and buffers of their equations.
@@ -175,7 +175,7 @@ impl GalerkinPoints {
             let Self { points, residual, entries, factors, .. } = self;
             let scale = work.kkt.scale();
             let block = scale.len();
-            let length = |x: &[f64]| largest_magnitude(x.iter().zip(scale).map(|(x, scale)| x / scale));
+            let length = |x: &[f64]| Length::in_units(x, scale);
             constraint_residual =
                 largest_magnitude(residual.chunks_exact(block).flat_map(|rows| rows[n..].iter().copied()));
             for (col, column) in entries.chunks_exact_mut(residual.len()).enumerate() {
@@ -188,15 +188,15 @@ impl GalerkinPoints {
             apply_scale(residual, scale);
             factors.solve(entries, residual);
             apply_scale(residual, scale);
-            let (mut moved, mut reach) = (0.0_f64, length(&state.q));
+            let (mut moved, mut reach) = (Length::default(), length(&state.q));
             for (a, update) in residual.chunks_exact(block).enumerate() {
                 let (moves, impulses) = update.split_at(n);
                 points.differences.column_mut(a).iter_mut().zip(moves).for_each(|(x, update)| *x -= update);
                 points.impulses.column_mut(a).iter_mut().zip(impulses).for_each(|(x, update)| *x -= update);
-                moved = largest_magnitude([moved, length(moves)]);
-                reach = reach.max(length(points.differences.column(a).as_slice()));
+                moved = moved.or(length(moves));
+                reach = reach.or(length(points.differences.column(a).as_slice()));
             }
-            Ok(relative(moved, reach))
+            Ok(moved.relative_to(reach))
         });
         match iteration {
             Ok(Converged { corrections }) => {

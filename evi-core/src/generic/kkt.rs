@@ -8,6 +8,7 @@
 use nalgebra::DMatrix;
 
 use crate::linear::{InPlaceLu, SingularMatrix, largest_magnitude, reciprocal_power_of_two};
+use crate::mechanics::Length;
 
 /// A matrix being assembled, or its factors after [`factor`](Self::factor).
 pub(super) struct Kkt {
@@ -73,6 +74,13 @@ impl Kkt {
     /// Length of `x` in units of its natural scale: `max |xᵢ| / Dᵢ` over the coordinates.
     pub(super) fn scaled_length(&self, x: &[f64]) -> f64 {
         largest_magnitude(x.iter().take(self.n_coordinates).zip(&self.scale).map(|(x, scale)| x / scale))
+    }
+
+    /// Length of `x` relative to the longer of `references`: by its natural scale or, of what has no inertia beside the rest, in plain numbers.
+    pub(super) fn relative_length(&self, x: &[f64], references: [&[f64]; 2]) -> f64 {
+        let length = |x: &[f64]| Length::in_units(x.get(..self.n_coordinates).unwrap_or(x), &self.scale);
+        let [reference, other] = references.map(length);
+        length(x).relative_to(reference.or(other))
     }
 
     /// Length of a momentum in the units of [`scaled_length`](Self::scaled_length) of a velocity: `max |pᵢ| Dᵢ`.

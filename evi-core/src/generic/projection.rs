@@ -148,7 +148,7 @@ impl<S: GenericSystem> Workspace<S> {
             for (multiplier, update) in multipliers.iter_mut().zip(&unknowns[n..]) {
                 *multiplier -= update;
             }
-            Ok(relative(kkt.scaled_length(unknowns), kkt.scaled_length(q)))
+            Ok(kkt.relative_length(unknowns, [q, &start]))
         })?;
         Ok(())
     }

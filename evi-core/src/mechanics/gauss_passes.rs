@@ -9,12 +9,13 @@
 //! A pass evaluates `W`, `∂L/∂v` and the mass matrix at `(Q, V)` for the last `V`, takes `P` from `W`, and corrects `V` by a solve with the mass matrix at
 //! every node.
 
-use super::lane_step::{product, reach};
+use super::lane_step::product;
+use super::reach::Length;
 use super::{Mechanics, State};
 use crate::array::Array;
 use crate::linear::{LaneMass, factor_mass};
 use crate::newton::{LinearProgress, NotConverged};
-use crate::scalar::{LaneOperation, Lanes, Scalar};
+use crate::scalar::{LaneOperation, Lanes};
 use crate::scheme::{GaussTables, PAST};
 use crate::system::MechanicalSystem;
 
@@ -95,6 +96,8 @@ impl<S: MechanicalSystem, const K: usize> GaussPasses<S, K> {
         let h = self.tables.weights.sum().abs();
         let mut velocities = self.first::<FUSED>(start, guess);
         let mut q = self.positions::<FUSED>(start, &velocities);
+        let mut metric: Nodes<S> = Array::filled(Lanes::ZERO);
+        let mut per_reach = 0.0;
         let mut progress = LinearProgress::default();
         let mut passes = 0;
         loop {
@@ -107,21 +110,22 @@ impl<S: MechanicalSystem, const K: usize> GaussPasses<S, K> {
                 correction[i] = p - gradient.momentum[i];
             }
             self.mass.solve::<FUSED>(&mut correction);
-            // Squares of lengths in the metric of the mass matrix: what the nodes move by, where they are, and how fast they are.
-            let (mut moves, mut here, mut speed) = (Lanes::ZERO, Lanes::ZERO, Lanes::ZERO);
             for i in 0..n {
-                let inertia = inertia[i];
                 velocities[i] = velocities[i] + correction[i];
-                moves = (inertia * correction[i]).times_plus::<FUSED>(correction[i], moves);
-                here = (inertia * q[i]).times_plus::<FUSED>(q[i], here);
-                speed = (inertia * velocities[i]).times_plus::<FUSED>(velocities[i], speed);
+            }
+            if passes == 0 {
+                let [here, speed] = [&q, &velocities].map(|x| Length::of_nodes::<S>(&inertia, x));
+                let reach = here.reach(speed.times(h));
+                metric = reach.with_light::<S>(inertia);
+                per_reach = h / reach.metric;
             }
             q = self.positions::<FUSED>(start, &velocities);
             passes += 1;
-            let moved = h * Scalar::sqrt(moves.largest());
-            let reach = reach(Scalar::sqrt(here.largest()), h * Scalar::sqrt(speed.largest()));
-            let length = if moved == 0.0 { 0.0 } else { moved / reach };
-            if progress.has_converged(length * length)? {
+            let mut moves = Lanes::ZERO;
+            for i in 0..n {
+                moves = (metric[i] * correction[i]).times_plus::<FUSED>(correction[i], moves);
+            }
+            if progress.has_converged(moves.largest() * per_reach * per_reach)? {
                 break;
             }
         }

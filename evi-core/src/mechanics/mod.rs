@@ -32,6 +32,8 @@ mod point_guess;
 #[cfg(feature = "std")]
 mod point_passes;
 mod quadratic_part;
+#[cfg(feature = "std")]
+pub(crate) mod reach;
 mod round_off;
 mod separable_action;
 mod state;
@@ -55,7 +57,7 @@ pub(crate) use impulse_step::ImpulseStep;
 pub(crate) use kick_drift_kick::KickDriftKick;
 #[cfg(feature = "std")]
 pub(crate) use lane_step::{
-    Arrival, BackStep, FirstGuess, LaneEnd, LaneStep, Passes, product, product_of_stored, reach,
+    Arrival, BackStep, FirstGuess, LaneEnd, LaneStep, Passes, product, product_of_stored,
 };
 pub(crate) use leapfrog_step::LeapfrogStep;
 pub(crate) use legendre::ConstantLegendre;
@@ -73,6 +75,8 @@ pub(crate) use point_guess::{NodeMotion, PointGuess};
 pub(crate) use point_passes::{PointEnd, PointIteration, PointPasses};
 pub use quadratic_part::QuadraticPart;
 pub(crate) use quadratic_part::StepModes;
+#[cfg(feature = "std")]
+pub(crate) use reach::Length;
 pub use round_off::LostDigits;
 pub(crate) use round_off::{Dropped, Lost, RoundOff, Rounded, Sum};
 pub(crate) use separable_action::SeparableAction;

@@ -18,13 +18,14 @@
 //! every pass gains half as many digits, and rates of `d` itself would have its round-off times up to `K (K + 1) / 2`. A fixed point solves the
 //! equations exactly, whatever `Mᵢ` and `Sᵢ` are and wherever the first pass begins.
 
-use super::lane_step::{from_start, nothing, product, reach};
+use super::lane_step::{from_start, nothing, product};
 use super::point_guess::{FirstPoints, NodeMotion, NodeMultipliers, Nodes, PointGuess};
+use super::reach::Length;
 use super::{ForcePoint, Mechanics, Points, State};
 use crate::array::Array;
 use crate::linear::{LaneGram, LaneMass, factor_mass};
 use crate::newton::{LinearProgress, NotConverged};
-use crate::scalar::{LaneOperation, Lanes, Scalar};
+use crate::scalar::{LaneOperation, Lanes};
 use crate::scheme::PointTables;
 use crate::system::{LagrangianGradient, MassShape, MechanicalSystem};
 
@@ -127,7 +128,7 @@ impl<S: MechanicalSystem, const K: usize> PointPasses<S, K> {
         // What the velocities do not know of yet.
         let mut moves: Nodes<S> = nothing();
         let mut jacobian: S::PerJacobianEntry<Lanes> = nothing();
-        let mut inertia: Nodes<S> = nothing();
+        let mut metric: Nodes<S> = nothing();
         let mut per_reach = 0.0;
         let mut progress = LinearProgress::default();
         let (mut is_stale, mut is_last) = (true, false);
@@ -138,8 +139,11 @@ impl<S: MechanicalSystem, const K: usize> PointPasses<S, K> {
             let mut squares = Lanes::ZERO;
             let mut shares: NodeMultipliers<S> = nothing();
             if is_stale {
-                inertia = self.factor_mass::<FUSED>(times, &q, &velocities);
-                per_reach = 1.0 / Self::reach(&inertia, &q, &differences);
+                let inertia = self.factor_mass::<FUSED>(times, &q, &velocities);
+                let [here, way] = [&q, &differences].map(|x| Length::of_nodes::<S>(&inertia, x));
+                let reach = here.reach(way);
+                metric = reach.with_light::<S>(inertia);
+                per_reach = 1.0 / reach.metric;
                 if Self::IS_CONSTRAINED {
                     (shares, jacobian) = S::constraint_derivatives(&self.constants, times, &q);
                     self.factor_gram::<FUSED>(&jacobian);
@@ -148,11 +152,8 @@ impl<S: MechanicalSystem, const K: usize> PointPasses<S, K> {
                 shares = S::constraints(&self.constants, times, &q);
             }
             if Self::IS_CONSTRAINED {
-                let residual = shares.clone();
                 self.gram.solve::<FUSED>(&mut shares);
-                // φᵀ S⁻¹ φ is the square of the displacement.
                 for c in 0..S::N_CONSTRAINTS {
-                    squares = residual[c].times_plus::<FUSED>(shares[c], squares);
                     multipliers[c] =
                         product::<K, FUSED>(&self.tables.lobatto.accelerations, shares[c], multipliers[c]);
                 }
@@ -162,6 +163,7 @@ impl<S: MechanicalSystem, const K: usize> PointPasses<S, K> {
                     differences[i] = differences[i] - displacements[i];
                     q[i] = q[i] - displacements[i];
                     moves[i] = moves[i] - displacements[i];
+                    squares = (metric[i] * displacements[i]).times_plus::<FUSED>(displacements[i], squares);
                 }
             }
             for i in 0..n {
@@ -193,13 +195,11 @@ impl<S: MechanicalSystem, const K: usize> PointPasses<S, K> {
             }
             moves = residual;
             self.mass.solve::<FUSED>(&mut moves);
-            let mut squares_of_moves = Lanes::ZERO;
             for i in 0..n {
-                squares_of_moves = (inertia[i] * moves[i]).times_plus::<FUSED>(moves[i], squares_of_moves);
+                squares = (metric[i] * moves[i]).times_plus::<FUSED>(moves[i], squares);
                 differences[i] = differences[i] + moves[i];
             }
-            let square = (Scalar::abs(squares) + squares_of_moves).largest();
-            let square = square * per_reach * per_reach;
+            let square = squares.largest() * per_reach * per_reach;
             is_stale = square > STALE * STALE;
             // Then once more, for the forces where the points have come to.
             is_last = progress.has_converged(square)?;
@@ -328,17 +328,6 @@ impl<S: MechanicalSystem, const K: usize> PointPasses<S, K> {
             force[i] = force[i].with(K - 1, at_start.force[i]);
         }
         AtNodes { momenta: momentum, forces: force, start_momentum: at_start.momentum, end_force }
-    }
-
-    /// What a step is found to the round-off of, in the metric of `inertia`.
-    #[inline(always)]
-    fn reach(inertia: &Nodes<S>, q: &Nodes<S>, differences: &Nodes<S>) -> f64 {
-        let (mut here, mut way) = (Lanes::ZERO, Lanes::ZERO);
-        for i in 0..S::N_COORDINATES {
-            here = here + inertia[i] * q[i] * q[i];
-            way = way + inertia[i] * differences[i] * differences[i];
-        }
-        reach(Scalar::sqrt(here.largest()), Scalar::sqrt(way.largest()))
     }
 }
 

@@ -22,7 +22,8 @@ use super::super::sparse::Symmetric;
 use super::past::Past;
 use super::sweeps::Sweeps;
 use crate::linear::largest_magnitude;
-use crate::mechanics::product_of_stored as product;
+use crate::mechanics::reach::larger;
+use crate::mechanics::{Length, product_of_stored as product};
 use crate::memory::memory;
 use crate::newton::{LinearProgress, NotConverged};
 use crate::scalar::{InstructionSet, LaneOperation, Lanes, Scalar};
@@ -43,6 +44,8 @@ pub(super) struct NodeStorage {
     pub(super) positions: Vec<Lanes>,
     /// Positions after the constraints of the last pass, where forces depend on them.
     pub(super) nearest: Vec<Lanes>,
+    /// What displacements of a coordinate are multiplied with before they are compared.
+    pub(super) units: Vec<f64>,
     /// `aⱼ` and `Fⱼ` of the last passes, `j = 0 .. K−1`.
     pub(super) accelerations: Vec<Lanes>,
     pub(super) forces: Vec<Lanes>,
@@ -77,6 +80,7 @@ impl NodeStorage {
             start_gram: Symmetric::zero(&pattern.elimination),
             positions: lanes(n),
             nearest: where_it(traits.force_varies()),
+            units: vec![0.0; n],
             accelerations: lanes(n),
             forces: lanes(n),
             uniform_force: if traits.has_uniform_force() { assembly.force_at_origin() } else { vec![0.0; n] },
@@ -124,6 +128,7 @@ memory!([] NodeStorage, |words|
         start_gram: _,
         positions: _,
         nearest: _,
+        units: _,
         accelerations: _,
         forces: _,
         uniform_force: _,
@@ -222,10 +227,15 @@ impl NodeStorage {
         if force_varies {
             self.nearest.copy_from_slice(&self.positions);
         }
-        let (reach, whole) = self.reach::<K>(mass, start);
-        let per_reach = 1.0 / reach;
+        let (here, way) = self.reach::<K>(mass, start);
+        let reach = here.reach(way);
+        for (unit, of_mass) in self.units.iter_mut().zip(&mass.units) {
+            *unit = larger(*of_mass, reach.least_unit());
+        }
+        let per_reach = 1.0 / reach.metric;
         // Residuals of constraints are those of positions that are rounded: no pass gains what is lost there.
-        let rounded = if assembly.n_constraints > 0 { reach / whole } else { 1.0 };
+        let rounded =
+            if assembly.n_constraints > 0 { reach.metric / (here.metric + way.metric) } else { 1.0 };
         let mut progress = LinearProgress::default();
         let (mut is_stale, mut passes) = (true, 0);
         loop {
@@ -259,14 +269,14 @@ impl NodeStorage {
         self.positions[i] = Lanes::splat(start.q[i]) + difference;
     }
 
-    /// What a step from `start` is found to the round-off of, in the metric of the mass matrix, and what its positions are rounded in.
-    fn reach<const K: usize>(&self, mass: &ConstantMass, start: &AssembledState) -> (f64, f64) {
-        let h = self.tables.nodes.to_array()[K - 1].abs();
-        let (mut here, mut way) = (0.0_f64, 0.0_f64);
+    /// The configuration at `start`, and the way from there in a step.
+    fn reach<const K: usize>(&self, mass: &ConstantMass, start: &AssembledState) -> (Length, Length) {
+        let h = self.tables.nodes.to_array()[K - 1];
+        let (mut here, mut way) = (Length::default(), Length::default());
         for ((unit, q), v) in mass.units.iter().zip(&start.q).zip(&start.v) {
-            here = here.max(unit * q.abs());
-            way = way.max(unit * h * v.abs());
+            here = here.with(*unit, *q);
+            way = way.with(*unit, h * v);
         }
-        (crate::mechanics::reach(here, way), here + way)
+        (here, way)
     }
 }

@@ -24,7 +24,8 @@ use super::super::sparse::TooMuchFill;
 use super::passes::FirstGuess;
 use super::past::Past;
 use crate::linear::largest_magnitude;
-use crate::mechanics::{product, reach};
+use crate::mechanics::reach::larger;
+use crate::mechanics::{Length, product};
 use crate::memory::memory;
 use crate::newton::{LinearProgress, NotConverged};
 use crate::scalar::{InstructionSet, LaneOperation, Lanes, Scalar};
@@ -57,7 +58,7 @@ memory!([] Motion, |words| Self { velocities, multipliers } => {
 pub(super) struct PointStorage {
     tables: PointTables,
     matrix: LaneSaddle,
-    /// `√Mᵢᵢ`: lengths are compared in this metric.
+    /// `√Mᵢᵢ`, or more: what lengths are multiplied with before they are compared.
     units: Vec<f64>,
     differences: Vec<Lanes>,
     positions: Vec<Lanes>,
@@ -325,13 +326,16 @@ impl PointStorage {
         lengths.largest()
     }
 
-    /// What a step from `start` is found to the round-off of, in the metric of the diagonal of the mass matrix.
-    fn reach<const K: usize>(&self, start: &AssembledState) -> f64 {
-        let (mut here, mut way) = (0.0_f64, 0.0_f64);
+    /// What a step from `start` is found to the round-off of, in the metric of the diagonal of the mass matrix, where light coordinates get a unit of plain
+    /// numbers.
+    fn reach<const K: usize>(&mut self, start: &AssembledState) -> f64 {
+        let (mut here, mut way) = (Length::default(), Length::default());
         for ((unit, q), difference) in self.units.iter().zip(&start.q).zip(&self.differences) {
-            here = here.max(unit * q.abs());
-            way = way.max(unit * difference.to_array()[K - 1].abs());
+            here = here.with(*unit, *q);
+            way = way.with(*unit, difference.to_array()[K - 1]);
         }
-        reach(here, way)
+        let reach = here.reach(way);
+        self.units.iter_mut().for_each(|unit| *unit = larger(*unit, reach.least_unit()));
+        reach.metric
     }
 }

@@ -71,7 +71,7 @@ impl NodeStorage {
         step: usize,
     ) -> Lanes {
         let Scene { assembly, mass, pattern, instructions, start } = scene;
-        let Self { tables, sweeps, gram, positions, nearest, forces, shares, .. } = self;
+        let Self { tables, sweeps, gram, positions, nearest, forces, shares, units, .. } = self;
         let is_constrained = assembly.n_constraints > 0;
         if is_constrained {
             gram.solve_backward::<FUSED>(&pattern.elimination, sweeps.backward.of(step), shares);
@@ -87,12 +87,12 @@ impl NodeStorage {
             let mut position = positions[i];
             if force_varies {
                 let moved = position - nearest[i];
-                lengths = lengths.larger(moved.abs() * Lanes::splat(mass.units[i]));
+                lengths = lengths.larger(moved.abs() * Lanes::splat(units[i]));
                 nearest[i] = position;
             }
             if is_constrained {
                 let displacement = mass.inverse_times_at::<Lanes, FUSED>(forces, i);
-                lengths = lengths.larger(displacement.abs() * Lanes::splat(mass.units[i]));
+                lengths = lengths.larger(displacement.abs() * Lanes::splat(units[i]));
                 position = position + displacement;
             }
             // The end of the step gives its lane to the start; the positions are made anew.

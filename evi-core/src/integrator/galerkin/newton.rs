@@ -4,7 +4,7 @@
 use crate::array::Array;
 use crate::integrator::{IterationFailure, StepError, Tally};
 use crate::linear::{InPlaceLu, SingularMatrix, constraint_index, largest_magnitude};
-use crate::mechanics::{GalerkinAction, Points, State, relative};
+use crate::mechanics::{GalerkinAction, Length, Points, State};
 use crate::memory::memory;
 use crate::newton::{self, Converged};
 use crate::scheme::NodalTables;
@@ -268,7 +268,7 @@ impl<S: MechanicalSystem, const K: usize> NewtonStorage<S, K> {
         tally: &mut impl Tally,
     ) -> Result<(), StepError> {
         let n = S::N_COORDINATES;
-        let in_units = |x: &[f64]| length_in_units(x, scale.as_ref());
+        let in_units = |x: &[f64]| Length::in_units(x, scale.as_ref());
         let mut constraint_residual = 0.0;
         let mut smallest_pivot_ratio = 1.0_f64;
         tally.begin_iteration();
@@ -280,8 +280,7 @@ impl<S: MechanicalSystem, const K: usize> NewtonStorage<S, K> {
             smallest_pivot_ratio = smallest_pivot_ratio.min(self.factors.pivot_ratio());
             tally.see_pivot_ratio(self.factors.pivot_ratio());
             self.solve_by(scale, |factors, entries, rhs| factors.solve(entries, rhs));
-            let mut length = 0.0_f64;
-            let mut reach = in_units(state.q.as_ref());
+            let (mut length, mut reach) = (Length::default(), in_units(state.q.as_ref()));
             for (a, update) in self.residual.iter().enumerate() {
                 for i in 0..n {
                     points.differences[a][i] -= update[i];
@@ -289,10 +288,10 @@ impl<S: MechanicalSystem, const K: usize> NewtonStorage<S, K> {
                 for c in 0..S::N_CONSTRAINTS {
                     points.impulses[a][c] -= update[constraint_index::<S>(c)];
                 }
-                length = largest_magnitude([length, in_units(&update.as_ref()[..n])]);
-                reach = reach.max(in_units(points.differences[a].as_ref()));
+                length = length.or(in_units(&update.as_ref()[..n]));
+                reach = reach.or(in_units(points.differences[a].as_ref()));
             }
-            let length = relative(length, reach);
+            let length = length.relative_to(reach);
             tally.see_correction(|| length);
             Ok(length)
         });

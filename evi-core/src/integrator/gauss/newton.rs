@@ -8,8 +8,8 @@
 
 use crate::array::Array;
 use crate::integrator::{IterationFailure, StepError, Tally};
-use crate::linear::{InPlaceLu, SingularMatrix, largest_magnitude};
-use crate::mechanics::{ForcePoint, GaussEnd, Mechanics, State, relative};
+use crate::linear::{InPlaceLu, SingularMatrix};
+use crate::mechanics::{ForcePoint, GaussEnd, Length, Mechanics, State};
 use crate::newton::{self, Converged};
 use crate::scalar::LANES;
 use crate::scheme::GaussTables;
@@ -18,8 +18,10 @@ use crate::system::MechanicalSystem;
 /// The iteration with its storage.
 pub(crate) struct GaussNewton<S: MechanicalSystem, const K: usize> {
     tables: GaussTables,
-    /// The matrix by columns; its factors while a correction is computed.
+    /// The matrix by columns, in units in which its unknowns are comparable; its factors while a correction is computed.
     entries: Vec<f64>,
+    /// These units.
+    scale: S::PerUnknown<f64>,
     /// Node by node.
     residual: [S::PerCoordinate<f64>; K],
     /// The same in the order of the matrix.
@@ -35,6 +37,7 @@ impl<S: MechanicalSystem, const K: usize> GaussNewton<S, K> {
         Self {
             tables: GaussTables::new::<K>(h),
             entries: vec![0.0; dimension * dimension],
+            scale: Array::filled(1.0),
             residual: nothing(),
             ordered: vec![0.0; dimension],
             velocities: nothing(),
@@ -50,9 +53,9 @@ impl<S: MechanicalSystem, const K: usize> GaussNewton<S, K> {
         tally: &mut impl Tally,
     ) -> Result<GaussEnd<S>, StepError> {
         let n = S::N_COORDINATES;
-        let scale = mechanics.unit_scale(start.t, &start.q, &start.v);
-        let in_units =
-            |x: &[f64]| largest_magnitude(x.iter().zip(scale.as_ref()).map(|(x, scale)| x / scale));
+        self.scale = mechanics.unit_scale(start.t, &start.q, &start.v);
+        let scale = self.scale.clone();
+        let in_units = |x: &[f64]| Length::in_units(x, scale.as_ref());
         self.velocities = core::array::from_fn(|_| start.v.clone());
         let h = self.tables.weights.sum().abs();
         let mut smallest_pivot_ratio = 1.0_f64;
@@ -65,15 +68,15 @@ impl<S: MechanicalSystem, const K: usize> GaussNewton<S, K> {
             smallest_pivot_ratio = smallest_pivot_ratio.min(self.factors.pivot_ratio());
             tally.see_pivot_ratio(self.factors.pivot_ratio());
             self.solve_residual(|factors, entries, rhs| factors.solve(entries, rhs));
-            let (mut length, mut reach) = (0.0, in_units(start.q.as_ref()));
+            let (mut length, mut reach) = (Length::default(), in_units(start.q.as_ref()));
             for (velocities, update) in self.velocities.iter_mut().zip(&self.residual) {
                 for i in 0..n {
                     velocities[i] -= update[i];
                 }
-                length = largest_magnitude([length, h * in_units(update.as_ref())]);
-                reach = largest_magnitude([reach, h * in_units(velocities.as_ref())]);
+                length = length.or(in_units(update.as_ref()).times(h));
+                reach = reach.or(in_units(velocities.as_ref()).times(h));
             }
-            let length = relative(length, reach);
+            let length = length.relative_to(reach);
             tally.see_correction(|| length);
             Ok(length)
         });
@@ -121,6 +124,7 @@ impl<S: MechanicalSystem, const K: usize> GaussNewton<S, K> {
         velocities: &[S::PerCoordinate<f64>; K],
     ) -> Result<(), SingularMatrix> {
         self.velocities.clone_from(velocities);
+        self.scale = mechanics.unit_scale(start.t, &start.q, &start.v);
         self.linearize(mechanics, start);
         self.factors.factor(&mut self.entries)
     }
@@ -147,12 +151,16 @@ impl<S: MechanicalSystem, const K: usize> GaussNewton<S, K> {
 
     /// Overwrites the residual with what `solve` makes of it by the factors.
     fn solve_residual(&mut self, solve: impl FnOnce(&InPlaceLu, &[f64], &mut [f64])) {
-        for (value, residual) in self.ordered.iter_mut().zip(self.residual.iter().flat_map(AsRef::as_ref)) {
-            *value = *residual;
+        let scale = || self.scale.as_ref().iter().cycle();
+        let rows = self.residual.iter().flat_map(AsRef::as_ref).zip(scale());
+        for (value, (residual, scale)) in self.ordered.iter_mut().zip(rows) {
+            *value = residual * scale;
         }
         solve(&self.factors, &self.entries, &mut self.ordered);
-        let rows = self.residual.iter_mut().flat_map(AsMut::as_mut);
-        rows.zip(&self.ordered).for_each(|(residual, value)| *residual = *value);
+        let values = self.ordered.iter().zip(scale());
+        for (residual, (value, scale)) in self.residual.iter_mut().flat_map(AsMut::as_mut).zip(values) {
+            *residual = value * scale;
+        }
     }
 
     /// Overwrites `residual` with the left sides of the equations and `entries` with their derivative.
@@ -215,6 +223,12 @@ impl<S: MechanicalSystem, const K: usize> GaussNewton<S, K> {
                 for i in 0..K {
                     self.residual[i][k] -= from_node[i] * gradient.force[k];
                 }
+            }
+        }
+        let scale = || self.scale.as_ref().iter().cycle();
+        for (column, of_column) in self.entries.chunks_exact_mut(dimension.max(1)).zip(scale()) {
+            for (entry, of_row) in column.iter_mut().zip(scale()) {
+                *entry *= of_row * of_column;
             }
         }
     }

@@ -20,8 +20,8 @@ mod first_guess;
 mod forces;
 mod gram;
 mod nodes;
-mod reach;
 
+use super::reach::{Length, has_light, larger, unit};
 use super::{AsMass, AsScene, ConstantLegendre, CoordinateMatrix, Coupling, Mechanics, State};
 use crate::array::Array;
 use crate::linear::{Cholesky, LaneGram};
@@ -36,8 +36,6 @@ use gram::applied;
 use nodes::Nodes;
 pub(super) use nodes::{from_start, nothing};
 pub(crate) use nodes::{product, product_of_stored};
-pub(crate) use reach::reach;
-use reach::unit;
 
 /// The Gram matrices are made anew after a pass that has moved a point by more than this share of the configuration.
 const STALE: f64 = 3e-3;
@@ -57,6 +55,8 @@ pub(crate) struct LaneStep<S: MechanicalSystem, const K: usize> {
     tables: ImpulseTables,
     /// What a coordinate is multiplied with before lengths are compared: `√Mᵢᵢ` as a power of two.
     units: S::PerCoordinate<f64>,
+    /// Whether there are coordinates that the metric of the masses does not see.
+    has_light: bool,
     /// Of the nodes `1 .. K`.
     gram: LaneGram<S>,
     /// Of the nodes `0 .. K−1`.
@@ -107,6 +107,7 @@ impl<S: MechanicalSystem, const K: usize> LaneStep<S, K> {
         let inverse_at = |i: usize, j: usize| if is_coupled(i, j) { inverse.at(i, j) } else { 0.0 };
         let couples_all = !<AsMass as Coupling<S>>::IS_DIAGONAL;
         let coupled = S::STRUCTURE.constraint_graph;
+        let units: S::PerCoordinate<f64> = Array::from_fn(|i| unit(mass[i][i]));
         Some(Self {
             tolerance,
             constants: Array::from_fn(|i| Lanes::splat(mechanics.constants[i])),
@@ -114,7 +115,8 @@ impl<S: MechanicalSystem, const K: usize> LaneStep<S, K> {
             legendre: ConstantLegendre::new(mechanics).ok()?,
             mobility: CoordinateMatrix::new(Array::from_fn(|i| Array::from_fn(|j| h * inverse_at(i, j)))),
             tables: ImpulseTables::new::<K>(h),
-            units: Array::from_fn(|i| unit(mass[i][i])),
+            has_light: has_light(units.as_ref()),
+            units,
             gram: LaneGram::<S>::new(coupled.iter().copied(), couples_all),
             start_gram: LaneGram::<S>::new(coupled.iter().copied(), couples_all),
             ways: nothing(),
@@ -144,8 +146,7 @@ impl<S: MechanicalSystem, const K: usize> LaneStep<S, K> {
             let (_, at_points) = S::constraint_derivatives(&self.constants, times_of_points, &points);
             self.factor_start_gram::<FUSED>(&at_points);
         }
-        let reach = self.reach(start);
-        let per_reach = 1.0 / (reach * reach);
+        let (per_reach, units) = self.metric(start);
         let mut progress = LinearProgress::to(self.tolerance);
         let mut is_stale = true;
         let mut passes = 0;
@@ -154,7 +155,7 @@ impl<S: MechanicalSystem, const K: usize> LaneStep<S, K> {
             let mut squares = Lanes::ZERO;
             if Self::FORCE_VARIES {
                 for i in 0..S::N_COORDINATES {
-                    let moved = (points[i] - nearest[i]) * Lanes::splat(self.units[i]);
+                    let moved = (points[i] - nearest[i]) * Lanes::splat(units[i]);
                     squares = moved.times_plus::<FUSED>(moved, squares);
                 }
             }
@@ -176,6 +177,12 @@ impl<S: MechanicalSystem, const K: usize> LaneStep<S, K> {
                 let displacements = self.displacements::<FUSED>(&jacobian, &shares);
                 for i in 0..S::N_COORDINATES {
                     nearest[i] = points[i] - displacements[i];
+                }
+                if self.has_light {
+                    for i in 0..S::N_COORDINATES {
+                        let displaced = displacements[i] * Lanes::splat(units[i]);
+                        squares = displaced.times_plus::<FUSED>(displaced, squares);
+                    }
                 }
             }
             let mut impulses = self.free_impulses::<FUSED>(start, times_of_points, &nearest, &ways);
@@ -213,6 +220,25 @@ impl<S: MechanicalSystem, const K: usize> LaneStep<S, K> {
             (self.ways, self.impulses, self.multipliers) = (ways, impulses, multipliers);
             return Ok(LaneEnd { difference, passes });
         }
+    }
+
+    /// One over the square of what a step from `start` is found to the round-off of, and the units of that metric.
+    #[inline(always)]
+    fn metric(&self, start: &State<S>) -> (f64, S::PerCoordinate<f64>) {
+        let h = self.tables.nodes.to_array()[K - 1];
+        let (mut here, mut way) = (Length::default(), Length::default());
+        for i in 0..S::N_COORDINATES {
+            here = here.with(self.units[i], start.q[i]);
+            way = way.with(self.units[i], h * start.v[i]);
+        }
+        let reach = here.reach(way);
+        let mut units = self.units.clone();
+        if self.has_light {
+            for i in 0..S::N_COORDINATES {
+                units[i] = larger(units[i], reach.least_unit());
+            }
+        }
+        (1.0 / (reach.metric * reach.metric), units)
     }
 
     /// `cᵢ h M⁻¹ p₀`.
