@@ -29,10 +29,8 @@ pub struct HandWrittenLanes {
     outer: Lanes,
     /// `β l₁² l₂²`.
     both: Lanes,
-    /// `Q₁` and `Q₂` are below `bounds[0] δ² + bounds[1] ε²`.
-    bounds: Pair,
-    /// A residual below this is round-off.
-    round_off: Lanes,
+    /// Residuals below these are round-off: a quarter of that of `2 l²`.
+    round_off: Pair,
     /// `LARGEST_REST` for energies in units of `m₂/h²` beside removed ones in units of `m₁/h²`.
     slow: Lanes,
     /// `(μ, ν)` of the last four steps, newest first.
@@ -117,11 +115,10 @@ impl HandWrittenLanes {
             squared_lengths: [of(&|system, _| square(system.l1)), of(&|system, _| square(system.l2))],
             outer: of(&|system, _| beta(system) * square(system.l2)),
             both: of(&|system, _| beta(system) * square(system.l1) * square(system.l2)),
-            bounds: [
-                of(&|system, _| 2.0 * square(system.l1)),
-                of(&|system, _| 2.0 * square(beta(system) * system.l2)),
+            round_off: [
+                of(&|system, _| 0.5 * f64::EPSILON * square(system.l1)),
+                of(&|system, _| 0.5 * f64::EPSILON * square(system.l2)),
             ],
-            round_off: of(&|system, _| 0.25 * f64::EPSILON * square(system.l1).min(square(system.l2))),
             slow: of(&|system, _| LARGEST_REST * system.m2 / system.m1),
             multipliers: [[Lanes::ZERO; 4]; 2],
         }
@@ -169,6 +166,13 @@ impl HandWrittenLanes {
         (residual, Slopes { adjugate: [[bb, ab], [ba, aa]], r: Lanes::splat(0.5) / determinant })
     }
 
+    /// Whether residuals of both constraints are.
+    #[inline(always)]
+    fn are_round_off(&self, left: Pair) -> LaneMask {
+        let [round_off, outer] = self.round_off;
+        LaneMask::at_most(left[0], round_off).and(LaneMask::at_most(left[1], outer))
+    }
+
     /// `(δ, ε)` by Newton's iteration with fresh slopes for every correction, and the lanes that are found.
     #[cold]
     #[inline(never)]
@@ -184,8 +188,10 @@ impl HandWrittenLanes {
             let next = sum(delta, slopes.correction::<FUSED>(f));
             delta = [pending.select(next[0], delta[0]), pending.select(next[1], delta[1])];
             let size = f[0].abs() + f[1].abs();
-            let done = LaneMask::at_most(size, Lanes::splat(16.0) * self.round_off)
-                .or(LaneMask::at_most(size * size, self.round_off * previous))
+            let [inner, outer] = self.round_off;
+            let round_off = LaneMask::below(inner, outer).select(inner, outer);
+            let done = LaneMask::at_most(size, Lanes::splat(8.0) * round_off)
+                .or(LaneMask::at_most(size * size, round_off * previous))
                 .and(pending);
             (found, pending) = (found.or(done), pending.without(done));
             if !pending.is_any() {
@@ -209,33 +215,34 @@ impl HandWrittenLanes {
         let wb = sum(self.wb, pull_b);
         let (f, slopes) = self.linearize::<FUSED>(sum(self.a, wa), sum(self.b, wb));
         let mut delta = slopes.correction::<FUSED>(f);
-        let left = fma::<FUSED>(self.bounds[0], delta[0] * delta[0], self.bounds[1] * (delta[1] * delta[1]));
-        let unsolved = LaneMask::ALL.without(LaneMask::at_most(left, self.round_off));
+        // A correction leaves the square of what it moves the end of a rod by.
+        let first = self.pull::<FUSED>(delta);
+        let squares = first.map(|moved| dot::<FUSED>(moved, moved));
+        let unsolved = LaneMask::ALL.without(self.are_round_off(squares));
+        let (mut moved_a, mut moved_b) = (difference(wa, first[0]), sum(wb, first[1]));
         let mut failed = LaneMask::NONE;
         if unsolved.is_any() {
-            let first = self.pull::<FUSED>(delta);
-            let squares = [dot::<FUSED>(first[0], first[0]), dot::<FUSED>(first[1], first[1])];
             let [mu, nu] = slopes.correction::<FUSED>(squares);
             let correction = [unsolved.select(mu, Lanes::ZERO), unsolved.select(nu, Lanes::ZERO)];
             let second = self.pull::<FUSED>(correction);
-            delta = sum(delta, correction);
-            // What is left now: Q of both corrections together, less Q of the first.
+            (moved_a, moved_b) = (difference(moved_a, second[0]), sum(moved_b, second[1]));
+            // What is left now: the square of both corrections together, less that of the first.
             let left = |i: usize| {
                 let twice =
                     [first[i][0] + first[i][0] + second[i][0], first[i][1] + first[i][1] + second[i][1]];
                 dot::<FUSED>(twice, second[i]).abs()
             };
-            let converged =
-                LaneMask::at_most(left(0), self.round_off).and(LaneMask::at_most(left(1), self.round_off));
-            let wanted = unsolved.without(converged);
+            delta = sum(delta, correction);
+            let wanted = unsolved.without(self.are_round_off([left(0), left(1)]));
             if wanted.is_any() {
                 let (anew, found) = self.solve_anew::<FUSED>(wa, wb, wanted);
                 delta = [wanted.select(anew[0], delta[0]), wanted.select(anew[1], delta[1])];
+                let [pull_a, pull_b] = self.pull::<FUSED>(delta);
+                (moved_a, moved_b) = (difference(wa, pull_a), sum(wb, pull_b));
                 failed = wanted.without(found);
             }
         }
-        let [pull_a, pull_b] = self.pull::<FUSED>(delta);
-        let (wa, wb) = (difference(wa, pull_a), sum(wb, pull_b));
+        let (wa, wb) = (moved_a, moved_b);
         let (a, b) = (sum(self.a, wa), sum(self.b, wb));
 
         // The end of gravity's kick, and the impulses that keep the velocities on the constraints: those that are expected, and the rest.
