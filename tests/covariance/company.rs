@@ -1,5 +1,7 @@
 //! A light body moves beside a heavy one as it does alone, whatever the ratio of their masses: it does not vanish in the metric of the mass matrix.
 
+use evi_core::assembled::{AssembledScheme, AssembledSimulation, AssembledSystem};
+
 use super::*;
 
 /// A planet about a fixed sun, whose mass depends on where it is, beside a weight that rests on a spring.
@@ -79,4 +81,64 @@ fn newton() {
     check(planet, Galerkin::<4>::new(H).by_newton(), PLANET);
     check(bob, Galerkin::<4>::new(H).by_newton(), BOB);
     check(bob, Evi::midpoint(H), BOB);
+}
+
+const N: usize = 3;
+
+/// Pendulums side by side.
+#[derive(MechanicalSystem, Clone)]
+#[evi(
+    coordinates(p: [N, 2]),
+    kinetic = sum(0..N, |i| 0.5 * m[i] * der(p[i]).norm_squared()),
+    potential = sum(0..N, |i| m[i] * g[i] * p[i][1]),
+    constraint(rod[i in 0..N]: p[i].norm_squared() == 1.0),
+)]
+struct Pendulums {
+    m: [f64; N],
+    g: [f64; N],
+}
+
+/// The same, of masses that depend on where they are.
+#[derive(MechanicalSystem, Clone)]
+#[evi(
+    coordinates(p: [N, 2]),
+    kinetic = sum(0..N, |i| 0.5 * m[i] * (1.0 + 0.3 * p[i][0].sin()) * der(p[i]).norm_squared()),
+    potential = sum(0..N, |i| m[i] * g[i] * p[i][1]),
+    constraint(rod[i in 0..N]: p[i].norm_squared() == 1.0),
+)]
+struct VaryingPendulums {
+    m: [f64; N],
+    g: [f64; N],
+}
+
+/// What the mass of the first pendulum, which hangs at rest, changes of where the others come to.
+#[track_caller]
+fn check_many<S: AssembledSystem + Clone>(
+    system: impl Fn([f64; N], [f64; N]) -> S,
+    scheme: impl AssembledScheme + Copy,
+) {
+    let end = |heavy: f64| {
+        let system = system([heavy, 1.0, 0.7], [0.0, 9.0, 7.0]);
+        let (q, v) = (vec![0.0, -1.0, 1.0, 0.0, 0.6, 0.8], vec![0.0, 0.0, 0.0, 0.3, 0.8, -0.6]);
+        let mut run = AssembledSimulation::new(system, scheme).start(q, v).expect("a start");
+        for _ in 0..100 {
+            run.advance().expect("a step");
+        }
+        run.state().q()[2..].to_vec()
+    };
+    let alike = end(1.0);
+    for heavy in [1e6, 1e12, 1e20, 1e30] {
+        let difference = largest_difference(&end(heavy), &alike);
+        assert!(difference <= ROUND_OFF, "beside {heavy:e} kg: {difference:e}");
+    }
+}
+
+#[test]
+fn of_many() {
+    let pendulums = |m, g| Pendulums { m, g };
+    check_many(pendulums, Evi::midpoint(H));
+    check_many(pendulums, Galerkin::<4>::new(H));
+    let varying = |m, g| VaryingPendulums { m, g };
+    check_many(varying, Evi::midpoint(H));
+    check_many(varying, Galerkin::<4>::new(H));
 }
