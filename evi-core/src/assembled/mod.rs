@@ -79,6 +79,7 @@ mod gram;
 mod history;
 mod implicit;
 mod kicked;
+mod lane_assembly;
 mod lane_saddle;
 mod mass;
 mod nodes;
