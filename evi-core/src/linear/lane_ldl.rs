@@ -120,10 +120,11 @@ impl<V: Array<Lanes>, M: Array<V>, F: Array<usize>> LaneLdl<V, M, F> {
         }
     }
 }
+
 /// Overwrites `mass` with the factors of the mass matrices of eight nodes, and returns a metric of motions.
 ///
-/// Of a positive definite mass it is the diagonal, none of which is smaller than its entry of `D`. On the diagonal of an indefinite one, as of a spacetime, there may be a zero: motions
-/// along that coordinate would have no length.
+/// Of a positive definite mass it is the diagonal, none of which is smaller than its entry of `D`. On the diagonal of an indefinite one, as of a
+/// spacetime, there may be a zero: motions along that coordinate would have no length.
 #[inline(always)]
 pub(crate) fn factor_mass<S: MechanicalSystem, const FUSED: bool>(
     mass: &mut LaneMass<S>,

@@ -26,6 +26,7 @@ pub(crate) const SLOWEST_CHORD: f64 = 0.1;
 pub(crate) const CHORD_ROUND_OFF: f64 = 8.0 * f64::EPSILON;
 /// What is light beside the rest has no length in the metric of the masses: lengths count in plain numbers as well, so much less that the metric
 /// decides wherever masses are of one size.
+#[cfg(feature = "std")]
 pub(crate) const LIGHT: f64 = 1.0 / 16.0;
 /// Newton from the predictors used here takes 3 to 6 corrections; a solution not found by then is not near.
 pub(crate) const MAX_CORRECTIONS: usize = 30;
