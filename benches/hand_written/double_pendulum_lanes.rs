@@ -169,8 +169,8 @@ impl HandWrittenLanes {
     /// Whether residuals of both constraints are.
     #[inline(always)]
     fn are_round_off(&self, left: Pair) -> LaneMask {
-        let [round_off, outer] = self.round_off;
-        LaneMask::at_most(left[0], round_off).and(LaneMask::at_most(left[1], outer))
+        let [inner, outer] = self.round_off;
+        LaneMask::at_most(left[0], inner).and(LaneMask::at_most(left[1], outer))
     }
 
     /// `(δ, ε)` by Newton's iteration with fresh slopes for every correction, and the lanes that are found.
@@ -189,8 +189,8 @@ impl HandWrittenLanes {
             delta = [pending.select(next[0], delta[0]), pending.select(next[1], delta[1])];
             let size = f[0].abs() + f[1].abs();
             let [inner, outer] = self.round_off;
-            let round_off = LaneMask::below(inner, outer).select(inner, outer);
-            let done = LaneMask::at_most(size, Lanes::splat(8.0) * round_off)
+            let round_off = Lanes::splat(0.5) * LaneMask::below(inner, outer).select(inner, outer);
+            let done = LaneMask::at_most(size, Lanes::splat(16.0) * round_off)
                 .or(LaneMask::at_most(size * size, round_off * previous))
                 .and(pending);
             (found, pending) = (found.or(done), pending.without(done));
@@ -238,7 +238,9 @@ impl HandWrittenLanes {
                 let (anew, found) = self.solve_anew::<FUSED>(wa, wb, wanted);
                 delta = [wanted.select(anew[0], delta[0]), wanted.select(anew[1], delta[1])];
                 let [pull_a, pull_b] = self.pull::<FUSED>(delta);
-                (moved_a, moved_b) = (difference(wa, pull_a), sum(wb, pull_b));
+                let (anew_a, anew_b) = (difference(wa, pull_a), sum(wb, pull_b));
+                let chosen = |anew: Pair, moved: Pair| [0, 1].map(|i| wanted.select(anew[i], moved[i]));
+                (moved_a, moved_b) = (chosen(anew_a, moved_a), chosen(anew_b, moved_b));
                 failed = wanted.without(found);
             }
         }

@@ -30,14 +30,23 @@ struct Displaced<T> {
 }
 
 impl<T> Displaced<T> {
+    fn is_close(&self) -> bool {
+        self.roundings == ROUNDINGS[0]
+    }
+
     fn map<U>(self, f: impl FnOnce(T) -> U) -> Displaced<U> {
         Displaced { roundings: self.roundings, to: f(self.to) }
     }
 }
 
 impl<T> Displaced<Option<T>> {
-    fn known(self) -> Option<Displaced<T>> {
-        Some(Displaced { roundings: self.roundings, to: self.to? })
+    /// What is there; of what is not found farther away, nothing, of what is not found close by, that nothing is.
+    fn known(self) -> Option<Option<Displaced<T>>> {
+        let is_close = self.is_close();
+        match self.to {
+            Some(to) => Some(Some(Displaced { roundings: self.roundings, to })),
+            None => is_close.then_some(None),
+        }
     }
 }
 
@@ -90,8 +99,9 @@ fn in_roundings(residuals: &[f64], displaced: &[Displaced<Vec<f64>>], in_any_cas
     let ratio = |(i, residual): (usize, &f64)| {
         let of_one = |other: &Displaced<Vec<f64>>| (other.to[i] - residual).abs() / other.roundings;
         let larger = |a: f64, b: f64| if b <= a || a.is_nan() { a } else { b };
-        // A NaN beside the state says that it stands at the rim of what is defined: nothing is known there.
-        let allowed = displaced.iter().map(of_one).fold(in_any_case, larger);
+        // A NaN close to the state says that it stands at the rim of what is defined: nothing is known there.
+        let is_known = |other: &&Displaced<Vec<f64>>| other.is_close() || !other.to[i].is_nan();
+        let allowed = displaced.iter().filter(is_known).map(of_one).fold(in_any_case, larger);
         if *residual == 0.0 || allowed.is_nan() { 0.0 } else { residual.abs() / allowed }
     };
     largest(&residuals.iter().enumerate().map(ratio).collect::<Vec<_>>())
@@ -216,7 +226,7 @@ fn residual<S: GenericSystem>(
         before.displaced_positions().into_iter().map(|state| state.map(|start| momenta(&start, after)));
     let ends = after.displaced_positions().into_iter().map(|state| state.map(|end| momenta(before, &end)));
     let displaced =
-        starts.chain(ends).map(Displaced::known).collect::<Option<Vec<Displaced<[Vec<f64>; 2]>>>>()?;
+        starts.chain(ends).filter_map(Displaced::known).collect::<Option<Vec<Displaced<[Vec<f64>; 2]>>>>()?;
     let of_end = |(slot, end): (usize, &Snapshot)| {
         let normals = normals(system, end);
         let left = |momenta: &[Vec<f64>; 2]| -> Vec<f64> {

@@ -19,7 +19,7 @@ pub(super) struct ConstantMass {
     pub(super) values: Vec<f64>,
     /// Whether every row has its diagonal entry alone.
     is_diagonal: bool,
-    /// `√Mᵢᵢ`: lengths are compared in this metric.
+    /// `√Mᵢᵢ`.
     pub(super) units: Vec<f64>,
     /// `a = ∂L/∂v` at rest, where it does not vanish.
     momentum_at_rest: Option<Vec<f64>>,

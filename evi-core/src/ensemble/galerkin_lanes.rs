@@ -69,10 +69,10 @@ pub struct GalerkinLanes<S: MechanicalSystem, const K: usize> {
     pub(super) tables: Box<Tables<K>>,
     pub(super) slopes: Slopes<S>,
     pub(super) legendre: LaneLegendre<S>,
-    /// What a coordinate is multiplied with before lengths are compared.
+    /// What a coordinate is multiplied with at least before lengths are compared: `√Mᵢᵢ`.
     pub(super) units: Vector<S>,
-    /// Members that have coordinates that the metric of the masses does not see: 1 for those, 0 for others. None if there are none.
-    pub(super) light: Option<Lanes>,
+    /// The members with coordinates that the metric of the masses does not see, if there are any.
+    pub(super) light: Option<LaneMask>,
     /// Of the nodes, and of what they were made.
     pub(super) grams: Vec<LaneLu<S>>,
     pub(super) jacobians: Vec<S::PerJacobianEntry<Lanes>>,
@@ -85,7 +85,7 @@ pub struct GalerkinLanes<S: MechanicalSystem, const K: usize> {
     pub(super) nearest: Vec<Vector<S>>,
     pub(super) shares: Vec<Multipliers<S>>,
     pub(super) multipliers: Vec<Multipliers<S>>,
-    /// Squares of how far the last pass has moved each point, in the metric of the masses.
+    /// Squares of how far the last pass has moved each point, in the units of [`LaneReach`].
     pub(super) squares: [Lanes; K],
 }
 
@@ -132,7 +132,7 @@ impl<S: MechanicalSystem, const K: usize> LaneScheme<S> for Galerkin<K, Linear> 
             slopes: Slopes::new(side_by_side(|lane, i| mechanics[lane].constants[i])),
             legendre: LaneLegendre::of(members.map(|member| &member.legendre)),
             units: side_by_side(|lane, i| members[lane].units[i]),
-            light: light(members),
+            light: with_light(members),
             grams: (0..K).map(|_| LaneLu::new::<AsMass>()).collect(),
             jacobians: vec![nothing(); K],
             gram: LaneLu::new::<AsMass>(),
@@ -148,9 +148,9 @@ impl<S: MechanicalSystem, const K: usize> LaneScheme<S> for Galerkin<K, Linear> 
     }
 }
 
-fn light<S: MechanicalSystem>(members: [&GalerkinMember<S>; LANES]) -> Option<Lanes> {
-    let is_light = members.map(|member| has_light(member.units.as_ref()));
-    is_light.contains(&true).then(|| Lanes::new(is_light.map(|is_light| if is_light { 1.0 } else { 0.0 })))
+fn with_light<S: MechanicalSystem>(members: [&GalerkinMember<S>; LANES]) -> Option<LaneMask> {
+    let light = LaneMask::of(members.map(|member| has_light(member.units.as_ref())));
+    light.is_any().then_some(light)
 }
 
 /// The acceleration of a state, from which passes without a past begin.

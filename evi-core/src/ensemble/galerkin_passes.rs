@@ -144,7 +144,7 @@ impl<S: MechanicalSystem, const K: usize> GalerkinLanes<S, K> {
                 }
                 if let Some(light) = self.light {
                     for i in 0..S::N_COORDINATES {
-                        let displaced = displacement[i] * units[i] * light;
+                        let displaced = light.select(displacement[i] * units[i], Lanes::ZERO);
                         square = displaced.times_plus::<FUSED>(displaced, square);
                     }
                 }

@@ -3,7 +3,7 @@
 use super::galerkin_lanes::Vector;
 use super::lane_state::LaneState;
 use super::mask::LaneMask;
-use crate::mechanics::reach::{CLOSEST, LONG, SHORTEST};
+use crate::mechanics::reach::{CLOSEST, LONG};
 use crate::newton::LIGHT;
 use crate::scalar::{Lanes, Scalar};
 use crate::system::MechanicalSystem;
@@ -44,5 +44,5 @@ fn reach(here: Lanes, way: Lanes) -> Lanes {
     let here = here + way;
     let long = Lanes::splat(LONG) * way;
     let limited = LaneMask::below(long, here).select(long, here);
-    limited.larger(Lanes::splat(CLOSEST) * here).larger(Lanes::splat(SHORTEST))
+    limited.larger(Lanes::splat(CLOSEST) * here)
 }

@@ -61,14 +61,12 @@ impl Points {
     /// Whether no point is farther from that of `other` than a tenth of the way that `other` makes.
     fn is_near(&self, other: &Self, scale: &[f64]) -> bool {
         const NEAR: f64 = 0.1;
-        let (mut distance, mut way) = (0.0, 0.0);
+        let (mut distance, mut way) = (Length::default(), Length::default());
         for (here, there) in self.differences.column_iter().zip(other.differences.column_iter()) {
-            for i in 0..here.len() {
-                distance = largest_magnitude([distance, (here[i] - there[i]) / scale[i]]);
-                way = largest_magnitude([way, there[i] / scale[i]]);
-            }
+            distance = distance.or(Length::in_units((here - there).as_slice(), scale));
+            way = way.or(Length::in_units(there.as_slice(), scale));
         }
-        distance <= NEAR * way
+        distance.relative_to(way) <= NEAR
     }
 }
 

@@ -22,6 +22,9 @@ use crate::system::MechanicalSystem;
 /// One value per coordinate at every node.
 type Nodes<S> = <S as MechanicalSystem>::PerCoordinate<Lanes>;
 
+/// What lengths are compared with is found anew after a pass that has moved a node by more than this share of it.
+const STALE: f64 = 3e-3;
+
 /// The passes of one scene, for one step size.
 pub(crate) struct GaussPasses<S: MechanicalSystem, const K: usize> {
     constants: S::PerConstant<Lanes>,
@@ -98,6 +101,7 @@ impl<S: MechanicalSystem, const K: usize> GaussPasses<S, K> {
         let mut q = self.positions::<FUSED>(start, &velocities);
         let mut metric: Nodes<S> = Array::filled(Lanes::ZERO);
         let mut per_reach = 0.0;
+        let mut is_stale = true;
         let mut progress = LinearProgress::default();
         let mut passes = 0;
         loop {
@@ -113,7 +117,7 @@ impl<S: MechanicalSystem, const K: usize> GaussPasses<S, K> {
             for i in 0..n {
                 velocities[i] = velocities[i] + correction[i];
             }
-            if passes == 0 {
+            if is_stale {
                 let [here, speed] = [&q, &velocities].map(|x| Length::of_nodes::<S>(&inertia, x));
                 let reach = here.reach(speed.times(h));
                 metric = reach.with_light::<S>(inertia);
@@ -125,7 +129,11 @@ impl<S: MechanicalSystem, const K: usize> GaussPasses<S, K> {
             for i in 0..n {
                 moves = (metric[i] * correction[i]).times_plus::<FUSED>(correction[i], moves);
             }
-            if progress.has_converged(moves.largest() * per_reach * per_reach)? {
+            let moved = moves.largest();
+            // Of a system that rests at the origin the reach is nothing, and no multiple of it.
+            let square = if moved == 0.0 { 0.0 } else { moved * per_reach * per_reach };
+            is_stale = square > STALE * STALE;
+            if progress.has_converged(square)? {
                 break;
             }
         }

@@ -135,7 +135,7 @@ impl<S: MechanicalSystem, const K: usize> PointPasses<S, K> {
         let mut passes = 0;
         loop {
             let mut q = from_start::<S>(start, &differences);
-            // Squares of lengths in the metric of the mass matrix.
+            // Squares of lengths in this metric.
             let mut squares = Lanes::ZERO;
             let mut shares: NodeMultipliers<S> = nothing();
             if is_stale {

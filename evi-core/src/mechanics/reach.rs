@@ -10,8 +10,6 @@ use crate::system::MechanicalSystem;
 pub(crate) const LONG: f64 = 8.0;
 /// Points are sums of a configuration: closer is not to be had.
 pub(crate) const CLOSEST: f64 = 1.0 / 16.0;
-/// What is shorter has no square.
-pub(crate) const SHORTEST: f64 = 1e-150;
 
 /// A length, measured twice: in the metric of the mass matrix, which does not see what is light beside the rest, and in plain numbers, which do not see
 /// what has large units.
@@ -77,7 +75,7 @@ impl Length {
         self.map(way, |here, way| {
             let here = here + way;
             let limited = if LONG * way < here { LONG * way } else { here };
-            larger(larger(limited, CLOSEST * here), SHORTEST)
+            larger(limited, CLOSEST * here)
         })
     }
 
@@ -85,7 +83,7 @@ impl Length {
     /// numbers.
     #[inline(always)]
     pub(crate) fn least_unit(self) -> f64 {
-        LIGHT * self.metric / self.plain
+        if self.plain > 0.0 { LIGHT * self.metric / self.plain } else { 0.0 }
     }
 
     /// The metric, but for what is lighter: [`least_unit`](Self::least_unit).

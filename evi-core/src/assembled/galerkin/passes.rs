@@ -44,7 +44,7 @@ pub(super) struct NodeStorage {
     pub(super) positions: Vec<Lanes>,
     /// Positions after the constraints of the last pass, where forces depend on them.
     pub(super) nearest: Vec<Lanes>,
-    /// What displacements of a coordinate are multiplied with before they are compared.
+    /// What displacements of a coordinate are multiplied with before they are compared: [`Length::least_unit`] or more.
     pub(super) units: Vec<f64>,
     /// `aⱼ` and `Fⱼ` of the last passes, `j = 0 .. K−1`.
     pub(super) accelerations: Vec<Lanes>,
@@ -57,7 +57,7 @@ pub(super) struct NodeStorage {
     pub(super) shares: Vec<Lanes>,
     /// Of the constraints that a Gram matrix is made of.
     pub(super) slopes: Vec<Lanes>,
-    /// The largest displacement of every step of a sweep in the last pass, in the metric of the mass matrix.
+    /// The largest displacement of every step of a sweep in the last pass, in these units.
     pub(super) lengths: Vec<f64>,
     /// The steps of a sweep that have held back all others, in this step or before. They affect what [`past`](Self::past) does.
     pub(super) slowest: Range<usize>,

@@ -229,7 +229,7 @@ impl PointStorage {
                 assembly.lane_constraint_derivatives(instructions, times, positions, values, slopes);
                 let at = LanePoint { t: times, q: positions, v: &motion.velocities };
                 matrix.factor::<FUSED>(assembly, instructions, at, slopes, units);
-                per_reach = 1.0 / self.reach::<K>(start);
+                per_reach = 1.0 / self.measured::<K>(start);
             } else {
                 let at = (times, &positions[..]);
                 assembly.lane_constraints(instructions, assembly.all(), at, values);
@@ -328,7 +328,7 @@ impl PointStorage {
 
     /// What a step from `start` is found to the round-off of, in the metric of the diagonal of the mass matrix, where light coordinates get a unit of plain
     /// numbers.
-    fn reach<const K: usize>(&mut self, start: &AssembledState) -> f64 {
+    fn measured<const K: usize>(&mut self, start: &AssembledState) -> f64 {
         let (mut here, mut way) = (Length::default(), Length::default());
         for ((unit, q), difference) in self.units.iter().zip(&start.q).zip(&self.differences) {
             here = here.with(*unit, *q);

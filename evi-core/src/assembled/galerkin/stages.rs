@@ -8,7 +8,7 @@ use crate::mechanics::product_of_stored as product;
 use crate::scalar::{Lanes, Scalar};
 
 impl NodeStorage {
-    /// A pass; overwrites `lengths` with the largest displacements, in the metric of the mass matrix, and returns the sum of all new positions.
+    /// A pass; overwrites `lengths` with the largest displacements, in the units of the storage, and returns the sum of all new positions.
     #[inline(always)]
     pub(super) fn pass<const K: usize, const FUSED: bool>(
         &mut self,

@@ -3,7 +3,7 @@
 
 use crate::array::Array;
 use crate::integrator::{IterationFailure, StepError, Tally};
-use crate::linear::{InPlaceLu, SingularMatrix, constraint_index, largest_magnitude};
+use crate::linear::{InPlaceLu, SingularMatrix, constraint_index};
 use crate::mechanics::{GalerkinAction, Length, Points, State};
 use crate::memory::memory;
 use crate::newton::{self, Converged};
@@ -167,22 +167,17 @@ impl<const K: usize> Extrapolation<K> {
     }
 }
 
-/// `max |xᵢ| / Dᵢ` over the coordinates.
-fn length_in_units(x: &[f64], scale: &[f64]) -> f64 {
-    largest_magnitude(x.iter().zip(scale).map(|(x, scale)| x / scale))
-}
-
 impl<S: MechanicalSystem, const K: usize> Points<S, K> {
     /// Whether no point is farther from that of `other` than a tenth of the way that `other` makes.
     fn is_near(&self, other: &Self, scale: &[f64]) -> bool {
         const NEAR: f64 = 0.1;
-        let (mut distance, mut way) = (0.0, 0.0);
+        let (mut distance, mut way) = (Length::default(), Length::default());
         for (here, there) in self.differences.iter().zip(&other.differences) {
             let difference = S::PerCoordinate::<f64>::from_fn(|i| here[i] - there[i]);
-            distance = largest_magnitude([distance, length_in_units(difference.as_ref(), scale)]);
-            way = largest_magnitude([way, length_in_units(there.as_ref(), scale)]);
+            distance = distance.or(Length::in_units(difference.as_ref(), scale));
+            way = way.or(Length::in_units(there.as_ref(), scale));
         }
-        distance <= NEAR * way
+        distance.relative_to(way) <= NEAR
     }
 }
 

@@ -16,7 +16,7 @@ use crate::scheme::PAST;
 use crate::system::MechanicalSystem;
 
 /// Ends are on the constraints to round-off, by passes that stop early nearly so. What is farther beside them than this share of their terms belongs to passes that
-/// have seen a part of the motion only, as of masses whose ratio is no number: in the metric of the heavy one the light one has no displacements.
+/// have lost digits, as of masses whose sum is the heavier one.
 const OFF: f64 = 1e-12;
 const OFF_IF_ROUGH: f64 = 1e-6;
 /// Ends are on the hidden constraints to round-off, where these are nearly dependent less so. What is farther beside them than this share has been projected with a

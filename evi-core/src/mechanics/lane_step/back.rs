@@ -11,7 +11,7 @@
 
 use super::gram::applied;
 use super::nodes::{Nodes, nothing, product};
-use super::{LaneStep, Mechanics, State};
+use super::{LaneStep, Length, Mechanics, State};
 use crate::array::Array;
 use crate::mechanics::for_each_curved_pair;
 use crate::newton::{LinearProgress, NotConverged, TARGET};
@@ -253,7 +253,9 @@ impl<S: MechanicalSystem, const K: usize> BackStep<S, K> {
             base[i] = Lanes::new(lanes);
             given[i] = Lanes::ZERO.with(K - 1, arrival.by_point[i]);
         }
-        let per_reach = self.per_reach(arrival);
+        let reach = self.reach(arrival);
+        let per_reach = if reach.metric > 0.0 { 1.0 / (reach.metric * reach.metric) } else { 0.0 };
+        let units = self.step.units_for(reach);
         let mut by_points = given.clone();
         self.add_force_change::<FUSED>(&base, &mut by_points);
         let mut ways = applied::<S, FUSED>(&self.step.mobility, &by_points);
@@ -262,10 +264,10 @@ impl<S: MechanicalSystem, const K: usize> BackStep<S, K> {
         let mut multipliers: S::PerConstraint<Lanes> = nothing();
         let mut progress = LinearProgress::to(TARGET);
         loop {
-            // Squares of lengths in the metric of the mass matrix.
+            // Squares of lengths in these units.
             let mut squares = Lanes::ZERO;
             for i in 0..n {
-                let moved = (by_impulses[i] - nearest[i]) * Lanes::splat(self.step.units[i]);
+                let moved = (by_impulses[i] - nearest[i]) * Lanes::splat(units[i]);
                 squares = moved.times_plus::<FUSED>(moved, squares);
             }
             nearest = by_impulses.clone();
@@ -284,6 +286,10 @@ impl<S: MechanicalSystem, const K: usize> BackStep<S, K> {
                 let displacements = self.step.displacements::<FUSED>(&jacobian, &shares);
                 for i in 0..n {
                     nearest[i] = nearest[i] - displacements[i];
+                    if self.step.has_light {
+                        let displaced = displacements[i] * Lanes::splat(units[i]);
+                        squares = displaced.times_plus::<FUSED>(displaced, squares);
+                    }
                 }
                 for c in 0..S::N_CONSTRAINTS {
                     squares = residual[c].times_plus::<FUSED>(shares[c], squares);
@@ -309,16 +315,15 @@ impl<S: MechanicalSystem, const K: usize> BackStep<S, K> {
         }
     }
 
-    /// The square of what derivatives are found to the round-off of, inverted; zero where there are none.
+    /// What derivatives are found to the round-off of.
     #[inline(always)]
-    fn per_reach(&self, arrival: &Arrival<'_, S, K>) -> f64 {
+    fn reach(&self, arrival: &Arrival<'_, S, K>) -> Length {
         let way = self.step.mobility.times(|i| arrival.by_point[i]);
-        let mut square = 0.0;
+        let mut reach = Length::default();
         for i in 0..S::N_COORDINATES {
-            let length = self.step.units[i] * (arrival.by_momentum[i].abs() + way[i].abs());
-            square += length * length;
+            reach = reach.with(self.step.units[i], arrival.by_momentum[i].abs() + way[i].abs());
         }
-        if square > 0.0 { 1.0 / square } else { 0.0 }
+        reach
     }
 }
 

@@ -53,7 +53,7 @@ pub(crate) struct LaneStep<S: MechanicalSystem, const K: usize> {
     /// `h M⁻¹`.
     mobility: CoordinateMatrix<S, AsMass>,
     tables: ImpulseTables,
-    /// What a coordinate is multiplied with before lengths are compared: `√Mᵢᵢ` as a power of two.
+    /// What a coordinate is multiplied with at least before lengths are compared: `√Mᵢᵢ` as a power of two.
     units: S::PerCoordinate<f64>,
     /// Whether there are coordinates that the metric of the masses does not see.
     has_light: bool,
@@ -151,7 +151,7 @@ impl<S: MechanicalSystem, const K: usize> LaneStep<S, K> {
         let mut is_stale = true;
         let mut passes = 0;
         loop {
-            // Squares of lengths in the metric of the mass matrix.
+            // Squares of lengths in these units.
             let mut squares = Lanes::ZERO;
             if Self::FORCE_VARIES {
                 for i in 0..S::N_COORDINATES {
@@ -232,13 +232,19 @@ impl<S: MechanicalSystem, const K: usize> LaneStep<S, K> {
             way = way.with(self.units[i], h * start.v[i]);
         }
         let reach = here.reach(way);
+        (1.0 / (reach.metric * reach.metric), self.units_for(reach))
+    }
+
+    /// The units in which displacements are compared with this reach.
+    #[inline(always)]
+    fn units_for(&self, reach: Length) -> S::PerCoordinate<f64> {
         let mut units = self.units.clone();
         if self.has_light {
             for i in 0..S::N_COORDINATES {
                 units[i] = larger(units[i], reach.least_unit());
             }
         }
-        (1.0 / (reach.metric * reach.metric), units)
+        units
     }
 
     /// `cᵢ h M⁻¹ p₀`.
