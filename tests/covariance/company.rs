@@ -1,6 +1,7 @@
 //! A light body moves beside a heavy one as it does alone, whatever the ratio of their masses: it does not vanish in the metric of the mass matrix.
 
 use evi_core::assembled::{AssembledScheme, AssembledSimulation, AssembledSystem};
+use evi_core::sensitivity::{Course, StateGradient};
 
 use super::*;
 
@@ -81,6 +82,30 @@ fn newton() {
     check(planet, Galerkin::<4>::new(H).by_newton(), PLANET);
     check(bob, Galerkin::<4>::new(H).by_newton(), BOB);
     check(bob, Evi::midpoint(H), BOB);
+}
+
+/// The derivatives of where both bodies come to, the heavy one weighed by its mass, by the start of the light one.
+#[test]
+fn gradients() {
+    let gradient = |heavy: f64| {
+        let course = Course::new([2.0, 1.0, 0.5, 0.0], [0.5, 0.0, 0.0, 0.7], 100);
+        let cost = |steps: u64, state: &State<BobAndWeight>, gradient: &mut StateGradient<BobAndWeight>| {
+            if steps < 100 {
+                return 0.0;
+            }
+            gradient.q[0] += heavy;
+            gradient.q[2] += 1.0;
+            heavy * state.q()[0] + state.q()[2]
+        };
+        let found = Simulation::new(bob(heavy), Galerkin::<4>::new(H)).gradient_of(&course, &cost);
+        let start = found.expect("a gradient").start;
+        [start.q[2], start.q[3], start.v[2], start.v[3]]
+    };
+    let alike = gradient(1.0);
+    for heavy in [1e6, 1e12, 1e20, 1e30] {
+        let difference = largest_difference(&gradient(heavy), &alike);
+        assert!(difference <= ROUND_OFF, "beside {heavy:e} kg: {difference:e}");
+    }
 }
 
 const N: usize = 3;

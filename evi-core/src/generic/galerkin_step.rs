@@ -63,7 +63,7 @@ impl Points {
         const NEAR: f64 = 0.1;
         let (mut distance, mut way) = (Length::default(), Length::default());
         for (here, there) in self.differences.column_iter().zip(other.differences.column_iter()) {
-            distance = distance.or(Length::in_units((here - there).as_slice(), scale));
+            distance = distance.or(Length::between(here.as_slice(), there.as_slice(), scale));
             way = way.or(Length::in_units(there.as_slice(), scale));
         }
         distance.relative_to(way) <= NEAR

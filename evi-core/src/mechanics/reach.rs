@@ -29,9 +29,18 @@ impl Length {
 
     /// The longest coordinate, where units are `1/scale`; NaN if one is.
     pub(crate) fn in_units(x: &[f64], scale: &[f64]) -> Self {
+        Self::of(x.iter().copied(), scale)
+    }
+
+    /// The same of `a − b`.
+    pub(crate) fn between(a: &[f64], b: &[f64], scale: &[f64]) -> Self {
+        Self::of(a.iter().zip(b).map(|(a, b)| a - b), scale)
+    }
+
+    fn of(x: impl Iterator<Item = f64> + Clone, scale: &[f64]) -> Self {
         Self {
-            metric: largest_magnitude(x.iter().zip(scale).map(|(x, scale)| x / scale)),
-            plain: largest_magnitude(x.iter().copied()),
+            metric: largest_magnitude(x.clone().zip(scale).map(|(x, scale)| x / scale)),
+            plain: largest_magnitude(x),
         }
     }
 

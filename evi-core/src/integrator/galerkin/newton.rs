@@ -173,8 +173,7 @@ impl<S: MechanicalSystem, const K: usize> Points<S, K> {
         const NEAR: f64 = 0.1;
         let (mut distance, mut way) = (Length::default(), Length::default());
         for (here, there) in self.differences.iter().zip(&other.differences) {
-            let difference = S::PerCoordinate::<f64>::from_fn(|i| here[i] - there[i]);
-            distance = distance.or(Length::in_units(difference.as_ref(), scale));
+            distance = distance.or(Length::between(here.as_ref(), there.as_ref(), scale));
             way = way.or(Length::in_units(there.as_ref(), scale));
         }
         distance.relative_to(way) <= NEAR
