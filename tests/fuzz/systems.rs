@@ -12,7 +12,7 @@ use crate::expressions::RandomSystem;
 use crate::inner_points::InnerPoints;
 use crate::numbers::{number, parameter, step_size};
 use crate::random_choices::{Choices, check};
-use crate::{ACTION_ROUND_OFFS, Outcome, ROUND_OFFS, STACK, largest, summary};
+use crate::{EQUATIONS_ROUND_OFFS, Outcome, ROUND_OFFS, STACK, largest, summary};
 
 /// Systems of the build script, of 2 and 3 coordinates.
 mod written {
@@ -129,9 +129,9 @@ fn followed<S: GenericSystem>(
             (seen.action, seen.actions) = (residual, 1);
         }
         outcome = outcome.or(seen);
-        let are_kept = seen.constraints <= ROUND_OFFS
+        let are_kept = seen.constraints <= EQUATIONS_ROUND_OFFS
             && seen.hidden_constraints <= ROUND_OFFS
-            && seen.action <= ACTION_ROUND_OFFS;
+            && seen.action <= EQUATIONS_ROUND_OFFS;
         if !are_kept {
             return Err(format!("{seen:?} from {before:?} to {after:?}"));
         }

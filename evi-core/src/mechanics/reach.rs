@@ -1,4 +1,13 @@
 //! What a step is found to the round-off of.
+//!
+//! In: how long a configuration is and the way from there in a step, with units `√Mᵢᵢ` and in plain numbers. Out: the reach `r` in the metric of the masses,
+//! whose round-off ends an iteration, and the units in which corrections are compared with it:
+//!
+//! ```text
+//! r(q, d) = max(min(|q| + |d|, 8 |d|), (|q| + |d|)/16)        sᵢ = max(√Mᵢᵢ, r_M / 16 r₁)
+//! ```
+//!
+//! with `r_M` in the metric and `r₁` in plain numbers: a correction counts by the measure in which it is longer.
 
 use super::relative;
 use crate::linear::largest_magnitude;
