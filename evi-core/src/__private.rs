@@ -8,7 +8,7 @@ pub use crate::generic::GenericSystem;
 pub use crate::linear::{DenseLu, Elimination, Guarded, Inverse0, Inverse1, Inverse2, reciprocal_pivot};
 pub use crate::scalar::Scalar;
 pub use crate::system::{
-    Block, ConstraintStructure, Dependence, Entry, EntryValue, Equation, ForceStructure, Formula,
-    HasFrequencies, HessianBlocks, HessianPattern, JacobianPattern, KernelOperations, KernelReport,
+    Block, CentralForce, ConstraintStructure, Dependence, Entry, EntryValue, Equation, ForceStructure,
+    Formula, HasFrequencies, HessianBlocks, HessianPattern, JacobianPattern, KernelOperations, KernelReport,
     LagrangianGradient, MassShape, MechanicalSystem, Operations, Potential, Structure, SystemReport,
 };

@@ -20,6 +20,7 @@ pub(crate) fn rate(graph: &mut Graph, root: ExprId) -> Option<ExprId> {
         // An input is constant over a step.
         Symbol::Parameter(_) | Symbol::NamedConstant(_) | Symbol::Velocity(_) | Symbol::Input(_) => None,
         Symbol::Composite(_) => unreachable!("loops and vectors are no part of what is differentiated"),
+        Symbol::Distance => unreachable!("no rate of a distance is asked for"),
     })
 }
 

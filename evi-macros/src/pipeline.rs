@@ -25,7 +25,9 @@ pub(crate) fn expand(input: TokenStream) -> TokenStream {
         return emit::fallback(&declaration, &diagnostics);
     };
     // L and φ → the derivatives that the integrators need, each simplified.
-    let equations = mechanics::differentiate_equations(&mut graph, &model);
+    let mut equations = mechanics::differentiate_equations(&mut graph, &model);
+    // A potential of one distance → the force along it.
+    mechanics::find_central_force(&mut graph, &mut equations);
     // Derivatives → what is zero, constant, varying.
     let structure = structure::analyze(&graph, &equations);
     structure.check_gradients(&model, &mut diagnostics);

@@ -210,6 +210,9 @@ fn unknowns_are_counted_before_and_after_elimination() {
     check::<SphericalPendulum>((4, 1));
     check::<ChargedSphericalPendulum>((4, 1));
     check::<DoublePendulumInAngles>((2, 2));
+    check::<StiffSpringPendulum>((2, 2));
+    assert_eq!(StiffSpringPendulum::REPORT.n_unknowns_of_midpoint_steps(), 1);
+    assert_eq!(DoublePendulum::REPORT.n_unknowns_of_midpoint_steps(), 2);
 }
 
 #[track_caller]

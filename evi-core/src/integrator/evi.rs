@@ -9,8 +9,8 @@ use super::positions::{self, Guess, Sags};
 use super::{Compensable, CompensableStep, OneStep, Scheme, StepError, Symmetric};
 use crate::array::Array;
 use crate::mechanics::{
-    ConstantLegendre, DiscreteLagrangian, Dropped, FoldedStep, ImplicitStep, LeapfrogStep, Lost, LostDigits,
-    Mechanics, ProjectionError, RoundOff, State, StepSolution, StepStart, Sum,
+    CentralStep, ConstantLegendre, DiscreteLagrangian, Dropped, FoldedStep, ImplicitStep, LeapfrogStep, Lost,
+    LostDigits, Mechanics, ProjectionError, RoundOff, State, StepSolution, StepStart, Sum,
 };
 use crate::memory::memory;
 use crate::newton::Tally;
@@ -160,11 +160,16 @@ impl<S: MechanicalSystem, const K: usize, F: Interpolant<S>> Scheme<S> for Evi<K
         } else {
             None
         };
+        let central = if EviStep::<S, F, K>::MAY_BE_CENTRAL && quadrature.is_midpoint() {
+            CentralStep::new(&action.mechanics, h)
+        } else {
+            None
+        };
         let legendre =
             if ConstantLegendre::<S>::EXISTS { ConstantLegendre::new(&action.mechanics).ok() } else { None };
         let folded = folded.map(|free| MultiplierStep::new(&action.mechanics, free));
         let leapfrog = leapfrog.map(|free| MultiplierStep::new(&action.mechanics, free));
-        Ok(EviStep { action, frequencies, folded, leapfrog, legendre, sags: Sags::none() })
+        Ok(EviStep { action, frequencies, folded, leapfrog, central, legendre, sags: Sags::none() })
     }
 }
 
@@ -205,6 +210,8 @@ pub struct EviStep<S: MechanicalSystem, F: Interpolant<S>, const K: usize> {
     folded: Option<MultiplierStep<S, FoldedStep<S, F>>>,
     /// The step of a potential that acts at the ends alone.
     leapfrog: Option<MultiplierStep<S, LeapfrogStep<S>>>,
+    /// The step of a central force.
+    central: Option<CentralStep<S>>,
     /// The Legendre transform of a constant mass matrix.
     legendre: Option<ConstantLegendre<S>>,
     /// What the general step expects the next one from.
@@ -244,6 +251,9 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
     /// Whether two nodes on the curves of `F` can make a leapfrog step that is not folded.
     pub(crate) const MAY_LEAP: bool =
         K == 2 && F::IS_STRAIGHT && LeapfrogStep::<S>::EXISTS && !FoldedStep::<S, F>::EXISTS;
+    /// Whether one node on the curves of `F` can make the step of a central force.
+    const MAY_BE_CENTRAL: bool =
+        K == 1 && F::IS_STRAIGHT && CentralStep::<S>::EXISTS && !FoldedStep::<S, F>::EXISTS;
 
     #[inline(always)]
     fn advance_with<R: RoundOff<S>>(
@@ -262,7 +272,13 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
         {
             return leapfrog.advance(&self.action.mechanics, self.action.h(), state, round_off, tally);
         }
-        if FoldedStep::<S, F>::EXISTS || Self::MAY_LEAP {
+        if Self::MAY_BE_CENTRAL
+            && let Some(central) = &self.central
+            && let Some(lost) = central.advance(&self.action.mechanics, state, round_off, tally)
+        {
+            return Ok(lost);
+        }
+        if FoldedStep::<S, F>::EXISTS || Self::MAY_LEAP || Self::MAY_BE_CENTRAL {
             let (end, lost) = self.advanced_rarely(state.clone(), round_off, tally)?;
             *state = end;
             return Ok(lost);
@@ -411,7 +427,7 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
 }
 
 memory!([S: MechanicalSystem, F: Interpolant<S>, const K: usize] EviStep<S, F, K>, |words|
-    Self { action, frequencies: _, folded, leapfrog, legendre: _, sags } => {
+    Self { action, frequencies: _, folded, leapfrog, central: _, legendre: _, sags } => {
         action.for_each_number(|number| words.fixed(number));
         // Which of the steps there are depends on the scene and the scheme alone.
         if let Some(folded) = folded {

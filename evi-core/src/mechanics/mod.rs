@@ -3,8 +3,10 @@
 //! In: a scene's kernels and their constants. Out: energies, momenta, forces, projections, accelerations with multipliers
 //! ([`Mechanics`]), linearisations ([`Linearisation`]), the equations of one step (`DiscreteLagrangian`; `MatrixAction` where a
 //! quadratic part is integrated exactly), and steps that are linear in the momentum, but for their constraints: those of
-//! quadratic Lagrangians (`FoldedStep`), of the trapezoidal rule (`LeapfrogStep`), and impulse methods (`ImpulseStep`).
+//! quadratic Lagrangians (`FoldedStep`), of the trapezoidal rule (`LeapfrogStep`), and impulse methods (`ImpulseStep`); and those of a single
+//! force along a distance, which are found by that (`CentralStep`).
 
+mod central_step;
 mod constraint_rank;
 mod constraints;
 mod coordinate_matrix;
@@ -39,6 +41,7 @@ mod separable_action;
 mod state;
 mod step_equations;
 
+pub(crate) use central_step::CentralStep;
 pub(crate) use constraint_rank::CONSISTENCY;
 pub use constraint_rank::{ConstraintRank, ConstraintSet};
 pub(crate) use constraints::{Directions, NOTHING};

@@ -61,6 +61,10 @@ fn write_unknowns(report: &SystemReport, f: &mut Formatter<'_>) -> fmt::Result {
     let (all, rest) = (report.n_unknowns(), report.n_unknowns_after_elimination());
     write!(f, "  unknowns: {all}")?;
     match (rest == all, rest) {
+        (true, _) if report.structure.central_force.is_some() => {
+            let rest = report.n_unknowns_of_midpoint_steps();
+            writeln!(f, "; {rest} in midpoint steps, a distance, for the force is central")
+        }
         (true, _) => writeln!(f),
         (false, 0) => writeln!(f, "; none once the positions are eliminated, for L is quadratic"),
         (false, _) => writeln!(f, "; {rest} once the positions are eliminated, for L is quadratic"),

@@ -5,7 +5,9 @@
 
 use core::fmt::{self, Display, Formatter};
 
-use crate::system::{Block, ConstraintStructure, Dependence, MassShape, Potential, SystemReport};
+use crate::system::{
+    Block, CentralForce, ConstraintStructure, Dependence, MassShape, Potential, Structure, SystemReport,
+};
 
 /// Names that a list holds; the others are only counted.
 pub(super) const LISTED_NAMES: usize = 12;
@@ -35,6 +37,10 @@ impl SystemReport {
             ),
             (structure.is_autonomous(), "time derivatives: time appears nowhere"),
             (m == 0, "multipliers: the scene has no constraints"),
+            (
+                matches!(structure.central_force, Some(CentralForce { is_linear: true, .. })),
+                "iteration for the distance in midpoint steps: the force is linear in it",
+            ),
             (m > 0 && has_constant_jacobian, "constraint Jacobian: constant, folded once per run"),
         ]
         .into_iter()
@@ -58,7 +64,7 @@ pub(super) fn write_structure(report: &SystemReport, f: &mut Formatter<'_>) -> f
         MassShape::BlockDiagonal(count) => writeln!(f, "{count} uncoupled blocks")?,
         MassShape::Full => writeln!(f, "full")?,
     }
-    writeln!(f, "  potential    {}", potential(structure.potential))?;
+    writeln!(f, "  potential    {}", potential(structure))?;
     writeln!(
         f,
         "  Hessian of L {}",
@@ -128,13 +134,21 @@ fn write_constraints(report: &SystemReport, f: &mut Formatter<'_>) -> fmt::Resul
     Ok(())
 }
 
-const fn potential(potential: Potential) -> &'static str {
-    match potential {
-        Potential::Zero => "zero",
-        Potential::Affine => "affine in q",
-        Potential::Quadratic => "quadratic in q",
-        Potential::General => "general in q",
-        Potential::Inseparable => "not separable: the kinetic energy depends on q",
+const fn potential(structure: &Structure) -> &'static str {
+    match (structure.potential, structure.central_force) {
+        (Potential::Zero, _) => "zero",
+        (Potential::Affine, _) => "affine in q",
+        (Potential::Quadratic, _) => "quadratic in q",
+        (Potential::General, None) => "general in q",
+        (Potential::General, Some(CentralForce { is_linear, is_beside_uniform_force })) => {
+            match (is_linear, is_beside_uniform_force) {
+                (true, true) => "quadratic in one distance, with terms affine in q",
+                (true, false) => "quadratic in one distance",
+                (false, true) => "general in one distance, with terms affine in q",
+                (false, false) => "general in one distance",
+            }
+        }
+        (Potential::Inseparable, _) => "not separable: the kinetic energy depends on q",
     }
 }
 

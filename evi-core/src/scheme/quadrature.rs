@@ -114,6 +114,12 @@ impl<const S: usize> Quadrature<S> {
         })
     }
 
+    /// Whether the one node is in the middle of a step.
+    pub(crate) fn is_midpoint(&self) -> bool {
+        // Equality of bits, as below.
+        self.offsets.as_slice() == [0.0] && self.weights.as_slice() == [1.0]
+    }
+
     /// Whether the nodes are the ends of a step. Their weights are then ½ each, up to rounding.
     pub(crate) fn is_trapezoid(&self) -> bool {
         // Equality of bits: other nodes are another rule, however near.

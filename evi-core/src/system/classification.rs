@@ -84,6 +84,16 @@ pub enum Potential {
     Inseparable,
 }
 
+/// The force of `L = ½ vᵀM v + fᵀq − F(r)` with constant `M` and `f`, along a distance `r`: `r²` is a sum of squares of independent
+/// functions that are affine in `q`. Of a potential that is quadratic in `q` this is not said.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CentralForce {
+    /// Whether `F` is quadratic in `r`: a linear spring.
+    pub is_linear: bool,
+    /// Whether `f` does not vanish.
+    pub is_beside_uniform_force: bool,
+}
+
 /// The structure of one constraint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ConstraintStructure {

@@ -12,7 +12,7 @@ mod report;
 mod structure;
 mod wrapped;
 
-pub use classification::{Block, ConstraintStructure, HessianBlocks, MassShape, Potential};
+pub use classification::{Block, CentralForce, ConstraintStructure, HessianBlocks, MassShape, Potential};
 pub use forces::{ForceStructure, HasFrequencies};
 pub use operations::{KernelOperations, Operations};
 pub use pattern::{Entry, EntryValue, HessianPattern, JacobianPattern};
@@ -232,6 +232,36 @@ pub trait MechanicalSystem: Sized {
         inputs: &Self::PerInput<T>,
     ) -> (Self::PerCoordinate<T>, Self::PerForceEntry<T>) {
         (Self::forces(constants, t, q, v, inputs), Array::from_fn(|_| T::from_f64(0.0)))
+    }
+
+    /// `r²` and `r ∂r/∂q`, where `r` is the distance of the central force ([`Structure::central_force`]); these four functions are zero for scenes
+    /// without one.
+    #[inline]
+    fn squared_distance<T: Scalar>(
+        _constants: &Self::PerConstant<T>,
+        _q: &Self::PerCoordinate<T>,
+    ) -> (T, Self::PerCoordinate<T>) {
+        (T::from_f64(0.0), Array::from_fn(|_| T::from_f64(0.0)))
+    }
+
+    /// `½ ∂²r²/∂q²`, by rows.
+    #[inline]
+    fn distance_metric<T: Scalar>(
+        _constants: &Self::PerConstant<T>,
+    ) -> Self::PerCoordinate<Self::PerCoordinate<T>> {
+        Array::from_fn(|_| Array::from_fn(|_| T::from_f64(0.0)))
+    }
+
+    /// `F'(r)` and `F''(r)`: the central force is `−F' ∂r/∂q`.
+    #[inline]
+    fn central_force<T: Scalar>(_constants: &Self::PerConstant<T>, _r: T) -> [T; 2] {
+        [T::from_f64(0.0); 2]
+    }
+
+    /// `f`: the uniform force beside the central one.
+    #[inline]
+    fn uniform_force<T: Scalar>(_constants: &Self::PerConstant<T>) -> Self::PerCoordinate<T> {
+        Array::from_fn(|_| T::from_f64(0.0))
     }
 
     /// The quantities of the items `observe`.

@@ -67,6 +67,12 @@ impl SystemReport {
             self.n_unknowns()
         }
     }
+
+    /// Unknowns of a step with one node in its middle on straight curves: the distance along which a central force acts, where the masses do not turn
+    /// it away; elsewhere those of other steps.
+    pub const fn n_unknowns_of_midpoint_steps(&self) -> usize {
+        if self.structure.central_force.is_some() { 1 } else { self.n_unknowns_after_elimination() }
+    }
 }
 
 /// An equation `left = right`.

@@ -2,7 +2,7 @@
 
 use super::pattern::{has_column, has_row, is_diagonal};
 use super::{
-    Block, ConstraintStructure, ForceStructure, HessianBlocks, HessianPattern, JacobianPattern,
+    Block, CentralForce, ConstraintStructure, ForceStructure, HessianBlocks, HessianPattern, JacobianPattern,
     KernelOperations, MassShape, Operations, Potential,
 };
 
@@ -51,6 +51,8 @@ pub struct Structure {
     pub constraint_graph: &'static [(usize, usize)],
     /// Forces that are no derivatives of `L`.
     pub forces: ForceStructure,
+    /// The one force that acts along a distance, in a scene that has no other but a uniform one.
+    pub central_force: Option<CentralForce>,
     /// Operations of each kernel of `L` and `φ`.
     pub operations: KernelOperations,
 }
@@ -74,6 +76,7 @@ impl Structure {
             each_constraint: &[],
             constraint_graph: &[],
             forces: ForceStructure::NONE,
+            central_force: None,
             operations: KernelOperations {
                 constants: NONE,
                 lagrangian: NONE,

@@ -9,10 +9,12 @@ macro_rules! unfolded_scene_of_inner {
         const PARAMETERS: &'static [&'static str] = S::PARAMETERS;
         const INPUTS: &'static [&'static str] = S::INPUTS;
         const OBSERVABLES: &'static [&'static str] = S::OBSERVABLES;
-        // Patterns stay, since the kernels fill them. Where the Lagrangian and its mass matrix might depend on time, nothing is folded.
+        // Patterns stay, since the kernels fill them. Where the Lagrangian and its mass matrix might depend on time, nothing is folded, and no force
+        // is taken for a central one.
         const STRUCTURE: $crate::system::Structure = $crate::system::Structure {
             lagrangian: $crate::system::Dependence { on_t: true, ..S::STRUCTURE.lagrangian },
             mass: $crate::system::Dependence { on_t: true, ..S::STRUCTURE.mass },
+            central_force: None,
             ..S::STRUCTURE
         };
         const REPORT: $crate::system::SystemReport =

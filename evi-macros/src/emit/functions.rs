@@ -125,16 +125,29 @@ impl<'a> Kernels<'a> {
     }
 
     fn writer(&self, has_velocities: bool) -> Writer<'_> {
-        let (n_constants, n_coordinates) = (self.slots.len(), self.model.coordinates.len());
+        let n_coordinates = self.model.coordinates.len();
         let velocities = has_velocities.then(|| (quote!(, v: &[T; #n_coordinates]), quote!(, v)));
         let (declared, passed) = velocities.unwrap_or_default();
+        let (q, q_passed) = self.positions();
+        self.writer_of((quote!(t: T, #q #declared), quote!(t, #q_passed #passed)))
+    }
+
+    /// Positions as declared, and as passed on.
+    pub(super) fn positions(&self) -> (TokenStream, TokenStream) {
+        let n_coordinates = self.model.coordinates.len();
+        (quote!(q: &[T; #n_coordinates]), quote!(q))
+    }
+
+    /// Writes programs over the constants `c` and inputs, as they are declared and as they are passed on.
+    pub(super) fn writer_of(&self, (declared, passed): (TokenStream, TokenStream)) -> Writer<'_> {
+        let n_constants = self.slots.len();
         Writer {
             graph: self.graph,
             named_constants: &self.model.named_constants,
             parameters: &self.model.parameters,
             slots: self.slots,
-            inputs: quote!(c: &[T; #n_constants], t: T, q: &[T; #n_coordinates] #declared),
-            arguments: quote!(c, t, q #passed),
+            inputs: quote!(c: &[T; #n_constants], #declared),
+            arguments: quote!(c, #passed),
         }
     }
 

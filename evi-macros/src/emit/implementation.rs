@@ -80,6 +80,7 @@ pub(super) fn mechanical_system(
     let optional = [
         programs.forces.as_ref().map(|forces| kernels.forces(forces)),
         programs.observables.as_ref().map(|observables| kernels.observables(observables)),
+        programs.central_force.as_ref().map(|central| kernels.central_force(central)),
     ];
     let kernels = [
         kernels.constants(&programs.constants),

@@ -153,6 +153,7 @@ impl Writer<'_> {
             Node::Symbol(Symbol::Velocity(index)) => Some(quote!(v[#index])),
             Node::Symbol(Symbol::Time) => Some(quote!(t)),
             Node::Symbol(Symbol::Input(index)) => Some(quote!(u[#index])),
+            Node::Symbol(Symbol::Distance) => Some(quote!(r)),
             Node::Symbol(Symbol::Parameter(symbol)) => {
                 let index = self.parameters.iter().position(|parameter| parameter.symbol == symbol);
                 let index = index.expect("a parameter in the graph is a parameter of the model");

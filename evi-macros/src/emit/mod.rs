@@ -3,6 +3,7 @@
 //! Emitted code names `::evi_core::__private` and its own items, nothing else, and stands in an anonymous constant.
 
 mod assembled;
+mod central_force;
 mod elimination;
 mod fallback;
 mod forces;

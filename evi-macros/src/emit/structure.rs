@@ -3,7 +3,7 @@
 use proc_macro2::TokenStream;
 use quote::quote;
 
-use super::forces;
+use super::{central_force, forces};
 use crate::expr::Dependence;
 use crate::schedule::{Operations, Programs};
 use crate::structure::{Block, ConstraintStructure, Entry, EntryValue, MassShape, Potential};
@@ -26,6 +26,7 @@ pub(super) fn structure(programs: &Programs) -> TokenStream {
     let (mass, lagrangian) = (dependence(known.mass), dependence(known.lagrangian));
     let constraint_dependence = dependence(known.constraints);
     let forces = forces::structure(programs);
+    let central_force = central_force::structure(programs);
     let constants = operations(programs.constants.operations);
     let lagrangian_operations = operations(programs.lagrangian.operations);
     let lagrangian_gradient = operations(programs.lagrangian_gradient.operations);
@@ -52,6 +53,7 @@ pub(super) fn structure(programs: &Programs) -> TokenStream {
             each_constraint: &[#(#each_constraint),*],
             constraint_graph: &[#(#constraint_graph),*],
             forces: #forces,
+            central_force: #central_force,
             operations: ::evi_core::__private::KernelOperations {
                 constants: #constants,
                 lagrangian: #lagrangian_operations,

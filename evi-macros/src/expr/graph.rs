@@ -50,6 +50,8 @@ pub(crate) enum Symbol {
     Input(usize),
     /// Expression of arrays that is no node, by its index in the graph's table.
     Composite(usize),
+    /// The distance along which a central force acts, where it stands for the coordinates that it is made of.
+    Distance,
 }
 
 /// The kinds of variables below a node.
@@ -277,7 +279,9 @@ impl Graph {
         }
         let id = ExprId(u32::try_from(self.nodes.len()).expect("a graph has fewer than 2³² nodes"));
         let dependence = match node {
-            Node::Symbol(Symbol::Coordinate(_)) => Dependence { on_q: true, ..Dependence::default() },
+            Node::Symbol(Symbol::Coordinate(_) | Symbol::Distance) => {
+                Dependence { on_q: true, ..Dependence::default() }
+            }
             Node::Symbol(Symbol::Velocity(_)) => Dependence { on_v: true, ..Dependence::default() },
             Node::Symbol(Symbol::Time) => Dependence { on_t: true, ..Dependence::default() },
             Node::Symbol(Symbol::Input(_)) => Dependence { on_inputs: true, ..Dependence::default() },

@@ -15,5 +15,5 @@ pub(crate) use composite::Composite;
 pub(crate) use graph::{Dependence, ExprId, Graph, Node, Symbol};
 pub(crate) use operator::{Binary, Cost, Unary};
 pub(crate) use print::{Names, Notation, print, print_definition, print_name};
-pub(crate) use substitute::substitute;
+pub(crate) use substitute::{replace, substitute};
 pub(crate) use value::{ArrayKind, Value, View};

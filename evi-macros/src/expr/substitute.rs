@@ -1,4 +1,4 @@
-//! Replacing symbols: in, roots and the new nodes of some symbols; out, the roots with these in place. Not
+//! Replacing symbols or other nodes: in, roots and the new nodes of some; out, the roots with these in place. Not
 //! simplified.
 
 use std::collections::HashMap;
@@ -11,16 +11,27 @@ pub(crate) fn substitute(
     roots: &[ExprId],
     value: impl Fn(&mut Graph, Symbol) -> Option<ExprId>,
 ) -> Vec<ExprId> {
+    replace(graph, roots, |graph, id| match graph.node(id) {
+        Node::Symbol(symbol) => value(graph, symbol),
+        _ => None,
+    })
+}
+
+/// The `roots` with `value(node)` for every node that has one.
+pub(crate) fn replace(
+    graph: &mut Graph,
+    roots: &[ExprId],
+    value: impl Fn(&mut Graph, ExprId) -> Option<ExprId>,
+) -> Vec<ExprId> {
     let mut replaced: HashMap<ExprId, ExprId> = HashMap::new();
     // Operands stand before their users, so that theirs are known.
     for id in graph.reachable(roots, |_| false) {
-        let replacement = match graph.node(id) {
-            Node::Number(_) => id,
-            Node::Symbol(symbol) => value(graph, symbol).unwrap_or(id),
+        let replacement = value(graph, id).unwrap_or_else(|| match graph.node(id) {
+            Node::Number(_) | Node::Symbol(_) => id,
             Node::Unary(operator, x) => graph.unary(operator, replaced[&x]),
             Node::Binary(operator, a, b) => graph.binary(operator, replaced[&a], replaced[&b]),
             Node::Power(base, exponent) => graph.power(replaced[&base], exponent),
-        };
+        });
         replaced.insert(id, replacement);
     }
     roots.iter().map(|root| replaced[root]).collect()

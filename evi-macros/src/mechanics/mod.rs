@@ -3,6 +3,11 @@
 //! In: a [`Model`]. Out: [`Equations`], every derivative that the integrators evaluate, simplified; entries that vanish
 //! structurally are absent.
 
+mod central_force;
+mod squares;
+
+pub(crate) use central_force::CentralForce;
+
 use crate::differentiate::{partial, rate};
 use crate::expr::{ExprId, Graph, Symbol, substitute};
 use crate::model::{Forces, Model, Named};
@@ -39,6 +44,8 @@ pub(crate) struct Equations {
     pub(crate) observables: Vec<ExprId>,
     /// `∂L/∂q` and `∂L/∂v` at `v = 0`; no kernel evaluates them.
     pub(crate) at_rest: AtRest,
+    /// The one force that acts along a distance, where there is no other.
+    pub(crate) central_force: Option<CentralForce>,
 }
 
 /// Forces beside those of `L`, and their derivatives; all empty where every force vanishes.
@@ -93,6 +100,7 @@ pub(crate) fn differentiate_equations(graph: &mut Graph, model: &Model) -> Equat
         frequencies: Vec::new(),
         observables: Vec::new(),
         at_rest: AtRest { force: Vec::new(), momentum: Vec::new() },
+        central_force: None,
     };
     equations.forces = calculus.forces(&model.forces, n);
     equations.frequencies = calculus.frequencies(&model.frequencies, n);
@@ -102,6 +110,12 @@ pub(crate) fn differentiate_equations(graph: &mut Graph, model: &Model) -> Equat
     equations.at_rest =
         AtRest { force: calculus.at_rest(&equations.force), momentum: calculus.at_rest(&equations.momentum) };
     equations
+}
+
+/// Looks for a central force, of whose distance whole scenes can take advantage.
+pub(crate) fn find_central_force(graph: &mut Graph, equations: &mut Equations) {
+    let mut calculus = Calculus { graph, simplifier: Simplifier::default() };
+    equations.central_force = calculus.central_force(equations);
 }
 
 fn is_lower(row: usize, col: usize) -> bool {

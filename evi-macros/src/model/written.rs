@@ -49,6 +49,7 @@ pub(crate) fn written(declaration: &Declaration) -> Vec<WrittenEquation> {
         Symbol::Time => "t".to_owned(),
         Symbol::Input(index) => model.inputs[index].to_string(),
         Symbol::Composite(_) => unreachable!("an expression of arrays is printed by what it is made of"),
+        Symbol::Distance => unreachable!("no equation is written in distances"),
     };
     let names = Names { symbol: &symbol, shared: &shared };
     let expression = |root| Formula::new(|notation| print(&graph, root, &names, notation));

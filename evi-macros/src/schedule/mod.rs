@@ -10,7 +10,7 @@ pub(crate) use program::{Operations, Place, Program, Statement};
 use std::collections::HashMap;
 
 use crate::expr::{ExprId, Graph, Node, Symbol};
-use crate::mechanics::Equations;
+use crate::mechanics::{CentralForce, Equations};
 use crate::structure::Structure;
 
 /// Every kernel of a system, with the structure it belongs to.
@@ -31,12 +31,30 @@ pub(crate) struct Programs {
     pub(crate) observables: Option<Program>,
     /// The frequencies of all coordinates, all of them constants; empty if there are none.
     pub(crate) frequencies: Vec<ExprId>,
+    /// The one force that acts along a distance, where there is no other.
+    pub(crate) central_force: Option<CentralForcePrograms>,
 }
 
 /// The kernels of forces that are no derivatives of `L`.
 pub(crate) struct ForcePrograms {
     pub(crate) values: Program,
     pub(crate) derivatives: Program,
+}
+
+/// The kernels of a central force.
+pub(crate) struct CentralForcePrograms {
+    /// `r²` and `r ∂r/∂q`.
+    pub(crate) squared_distance: Program,
+    /// `F'(r)` and `F''(r)`.
+    pub(crate) force: Program,
+    /// `½ ∂²r²/∂q²`, by rows, all of them constants.
+    pub(crate) metric: Vec<ExprId>,
+    /// The force beside it, constants.
+    pub(crate) uniform: Vec<ExprId>,
+    /// Whether `F''` is a constant.
+    pub(crate) is_linear: bool,
+    /// Whether there is a force beside it.
+    pub(crate) is_beside_uniform_force: bool,
 }
 
 impl Programs {
@@ -56,7 +74,10 @@ impl Programs {
             .iter()
             .flat_map(|forces| [("forces", &forces.values), ("force_derivatives", &forces.derivatives)]);
         let observables = self.observables.iter().map(|program| ("observables", program));
-        always.into_iter().chain(forces).chain(observables).collect()
+        let central = self.central_force.iter().flat_map(|central| {
+            [("squared_distance", &central.squared_distance), ("central_force", &central.force)]
+        });
+        always.into_iter().chain(forces).chain(observables).chain(central).collect()
     }
 }
 
@@ -107,10 +128,12 @@ pub(crate) fn schedule(graph: &Graph, equations: &Equations, structure: Structur
     let force_derivatives: Vec<ExprId> = forces.iter().chain(&structure.force_entries).copied().collect();
     let observables = equations.observables.clone();
     let frequencies = equations.frequencies.clone();
+    let central = equations.central_force.as_ref();
+    let central_roots = central.map(CentralForce::roots).unwrap_or_default();
 
     let mut slots = ConstantSlots::new(&structure.constant_entries);
     let all = [&lagrangian, &derivatives, &constraint_derivatives, &curvature];
-    for roots in all.into_iter().chain([&force_derivatives, &observables, &frequencies]) {
+    for roots in all.into_iter().chain([&force_derivatives, &observables, &frequencies, &central_roots]) {
         slots.add_constants_of(graph, roots);
     }
     // Outside `constants`, whatever depends on parameters alone is read, not computed.
@@ -128,6 +151,14 @@ pub(crate) fn schedule(graph: &Graph, equations: &Equations, structure: Structur
             .then(|| ForcePrograms { values: kernel(forces), derivatives: kernel(force_derivatives) }),
         observables: (!observables.is_empty()).then(|| kernel(observables)),
         frequencies,
+        central_force: central.map(|central| CentralForcePrograms {
+            squared_distance: kernel(central.distance_roots()),
+            force: kernel(vec![central.force, central.slope]),
+            metric: central.metric.clone(),
+            uniform: central.uniform.clone(),
+            is_linear: graph.is_constant(central.slope),
+            is_beside_uniform_force: central.uniform.iter().any(|&force| graph.as_number(force) != Some(0.0)),
+        }),
         structure,
         slots,
     }

@@ -264,6 +264,7 @@ const _: () = {
             ],
             constraint_graph: &[(0usize, 1usize)],
             forces: ::evi_core::__private::ForceStructure::NONE,
+            central_force: ::core::option::Option::None,
             operations: ::evi_core::__private::KernelOperations {
                 constants: ::evi_core::__private::Operations {
                     additions: 0usize,

@@ -64,6 +64,7 @@ const _: () = {
             each_constraint: &[],
             constraint_graph: &[],
             forces: ::evi_core::__private::ForceStructure::NONE,
+            central_force: ::core::option::Option::None,
             operations: ::evi_core::__private::KernelOperations {
                 constants: ::evi_core::__private::Operations {
                     additions: 0usize,

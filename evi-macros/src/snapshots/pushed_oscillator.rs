@@ -108,6 +108,7 @@ const _: () = {
                     functions: 1usize,
                 },
             },
+            central_force: ::core::option::Option::None,
             operations: ::evi_core::__private::KernelOperations {
                 constants: ::evi_core::__private::Operations {
                     additions: 0usize,

@@ -6,6 +6,8 @@
 // constraints                0   0   0   0
 // constraint_derivatives     0   0   0   0
 // constraint_curvature       0   0   0   0
+// squared_distance           1   2   0   0
+// central_force              1   1   0   0
 
 const _: () = {
     #[automatically_derived]
@@ -83,6 +85,10 @@ const _: () = {
             each_constraint: &[],
             constraint_graph: &[],
             forces: ::evi_core::__private::ForceStructure::NONE,
+            central_force: ::core::option::Option::Some(::evi_core::__private::CentralForce {
+                is_linear: true,
+                is_beside_uniform_force: true,
+            }),
             operations: ::evi_core::__private::KernelOperations {
                 constants: ::evi_core::__private::Operations {
                     additions: 0usize,
@@ -192,7 +198,7 @@ const _: () = {
                         functions: 0usize,
                     },
                     temporaries: 0usize,
-                    statements: 3usize,
+                    statements: 4usize,
                 },
                 ::evi_core::__private::KernelReport {
                     name: "lagrangian",
@@ -260,13 +266,35 @@ const _: () = {
                     temporaries: 0usize,
                     statements: 0usize,
                 },
+                ::evi_core::__private::KernelReport {
+                    name: "squared_distance",
+                    operations: ::evi_core::__private::Operations {
+                        additions: 1usize,
+                        multiplications: 2usize,
+                        divisions: 0usize,
+                        functions: 0usize,
+                    },
+                    temporaries: 0usize,
+                    statements: 1usize,
+                },
+                ::evi_core::__private::KernelReport {
+                    name: "central_force",
+                    operations: ::evi_core::__private::Operations {
+                        additions: 1usize,
+                        multiplications: 1usize,
+                        divisions: 0usize,
+                        functions: 0usize,
+                    },
+                    temporaries: 0usize,
+                    statements: 1usize,
+                },
             ],
         };
         type PerCoordinate<X: ::core::clone::Clone> = [X; 2usize];
         type PerConstraint<X: ::core::clone::Clone> = [X; 0usize];
         type PerUnknown<X: ::core::clone::Clone> = [X; 2usize];
         type PerParameter<X: ::core::clone::Clone> = [X; 4usize];
-        type PerConstant<X: ::core::clone::Clone> = [X; 6usize];
+        type PerConstant<X: ::core::clone::Clone> = [X; 7usize];
         type PerHessianEntry<X: ::core::clone::Clone> = [X; 3usize];
         type PerJacobianEntry<X: ::core::clone::Clone> = [X; 0usize];
         type PerInput<X: ::core::clone::Clone> = [X; 0usize];
@@ -287,7 +315,8 @@ const _: () = {
             let x0 = T::from_f64(0.5) * p[0usize];
             let x1 = T::from_f64(0.5) * p[2usize];
             let x2 = p[0usize] * p[3usize];
-            [p[0usize], p[1usize], x0, x1, x2, p[2usize]]
+            let x3 = -x2;
+            [p[0usize], p[1usize], x0, x1, x2, p[2usize], x3]
         }
         #[inline]
         fn lagrangian<T: ::evi_core::__private::Scalar>(
@@ -377,6 +406,34 @@ const _: () = {
             v: &Self::PerCoordinate<T>,
         ) -> Self::PerConstraint<T> {
             []
+        }
+        #[inline(always)]
+        fn squared_distance<T: ::evi_core::__private::Scalar>(
+            c: &Self::PerConstant<T>,
+            q: &Self::PerCoordinate<T>,
+        ) -> (T, Self::PerCoordinate<T>) {
+            let x0 = (q[0usize] * q[0usize]) + (q[1usize] * q[1usize]);
+            (x0, [q[0usize], q[1usize]])
+        }
+        #[inline(always)]
+        fn central_force<T: ::evi_core::__private::Scalar>(
+            c: &Self::PerConstant<T>,
+            r: T,
+        ) -> [T; 2] {
+            let x0 = c[5usize] * (r - c[1usize]);
+            [x0, c[5usize]]
+        }
+        #[inline]
+        fn distance_metric<T: ::evi_core::__private::Scalar>(
+            c: &Self::PerConstant<T>,
+        ) -> Self::PerCoordinate<Self::PerCoordinate<T>> {
+            [[T::from_f64(1.0), T::from_f64(0.0)], [T::from_f64(0.0), T::from_f64(1.0)]]
+        }
+        #[inline]
+        fn uniform_force<T: ::evi_core::__private::Scalar>(
+            c: &Self::PerConstant<T>,
+        ) -> Self::PerCoordinate<T> {
+            [T::from_f64(0.0), c[6usize]]
         }
         #[inline(always)]
         fn for_each_vv<T: ::core::marker::Copy>(

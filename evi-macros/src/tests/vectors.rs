@@ -42,6 +42,7 @@ fn value(model: &Model, symbol: Symbol) -> f64 {
         Symbol::Input(i) => spread(i, 0.1),
         Symbol::NamedConstant(_) => std::f64::consts::PI,
         Symbol::Composite(_) => panic!("a loop has no value"),
+        Symbol::Distance => panic!("no expression is written in distances"),
     }
 }
 

@@ -53,7 +53,8 @@ pub(super) struct Compiled {
 pub(super) fn compiled(source: &str) -> Compiled {
     let mut graph = Graph::default();
     let model = resolved(source, &mut graph);
-    let equations = mechanics::differentiate_equations(&mut graph, &model);
+    let mut equations = mechanics::differentiate_equations(&mut graph, &model);
+    mechanics::find_central_force(&mut graph, &mut equations);
     let structure = structure::analyze(&graph, &equations);
     let programs = schedule::schedule(&graph, &equations, structure);
     graph.verify();
@@ -101,6 +102,7 @@ impl Point {
             Symbol::Time => self.values[4],
             Symbol::Input(index) => -0.6 + 0.31 * index as f64,
             Symbol::Composite(_) => panic!("a loop has no value"),
+            Symbol::Distance => 1.3,
         }
     }
 
