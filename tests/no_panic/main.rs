@@ -8,7 +8,7 @@ use std::hint::black_box;
 use evi_core::baseline::Rattle;
 use evi_core::integrator::{Compensated, Composed, LinearisedAt, MatrixEvi, OfRank, Rescued};
 use evi_core::prelude::*;
-use evi_examples::{DoublePendulum, DoublePendulumAngles, StiffSpringPendulum};
+use evi_examples::{DoublePendulum, DoublePendulumAngles, Kepler, StiffSpringPendulum};
 use no_panic::no_panic;
 use scenes::{CarriedPendulum, PolarBead};
 
@@ -36,8 +36,12 @@ steps! {
     composed: DoublePendulum by Composed<Evi<1>, 17>;
     /// A kick, a drift and a kick.
     leapfrog: StiffSpringPendulum by Evi<2>;
+    /// Found by a distance, along which the force is linear.
+    spring: StiffSpringPendulum by Evi<1>;
+    /// Found by a distance.
+    orbit: Kepler by Evi<1>;
     /// Newton's iteration on positions.
-    general: StiffSpringPendulum by Evi<1>;
+    general: StiffSpringPendulum by Evi<3>;
     /// The same with time, constraints, forces and an input.
     driven: CarriedPendulum by Evi<1>;
     /// With lost digits kept.
@@ -101,9 +105,11 @@ fn main() {
     take(double(), midpoint, bent, folded);
     take(double(), Evi::simpson(0.01).frequency(3.0), bent, folded_on_curves);
     take(double(), midpoint.composed(Composition::kahan_li_8()), bent, composed);
-    let spring = || StiffSpringPendulum::with_stiffness(1e3);
-    take(spring(), Evi::trapezoid(0.01), [1.0, 0.0], leapfrog);
-    take(spring(), midpoint, [1.0, 0.0], general);
+    let stiff = || StiffSpringPendulum::with_stiffness(1e3);
+    take(stiff(), Evi::trapezoid(0.01), [1.0, 0.0], leapfrog);
+    take(stiff(), midpoint, [1.0, 0.0], spring);
+    take(Kepler::UNIT, midpoint, [1.0, 0.0], orbit);
+    take(stiff(), Evi::simpson(0.01), [1.0, 0.0], general);
     let carried = || CarriedPendulum { m: 1.0, l: 1.0, c: 0.1, w: 2.0, g: 9.81 };
     take(carried(), midpoint, [0.6, -0.8], driven);
     let angles = || DoublePendulumAngles { m1: 1.0, m2: 0.5, l1: 1.0, l2: 0.8, g: 9.81 };
@@ -117,14 +123,14 @@ fn main() {
     take(double(), passes, bent, galerkin);
     take(double(), Galerkin::<8>::new(0.1), bent, galerkin_of_all_lanes);
     take(carried(), Galerkin::<4>::new(0.1), [0.6, -0.8], galerkin_driven);
-    take(spring(), Galerkin::<4>::new(0.01), [1.0, 0.0], galerkin_free);
+    take(stiff(), Galerkin::<4>::new(0.01), [1.0, 0.0], galerkin_free);
     take(PolarBead { m: 1.0, c: 0.4, l: 1.0, g: 9.81 }, passes, [1.4, 0.0], galerkin_on_points);
     take(angles(), passes, [0.6, 0.9], galerkin_on_free_points);
     take(double(), passes.frequency(3.0), bent, galerkin_on_curves);
     take(double(), Galerkin::<2>::new(0.1).composed(Composition::triple_jump_4()), bent, galerkin_composed);
     take(double(), passes.compensated(), bent, galerkin_compensated);
     take(double(), passes.rescued::<4>(), bent, galerkin_rescued);
-    take(spring(), Gauss::<3>::new(0.01), [1.0, 0.0], gauss);
+    take(stiff(), Gauss::<3>::new(0.01), [1.0, 0.0], gauss);
     take(angles(), Gauss::<4>::new(0.1), [0.6, 0.9], gauss_of_angles);
     take(angles(), Gauss::<2>::new(0.1).compensated(), [0.6, 0.9], gauss_compensated);
     take(double(), Rattle::new(0.01), bent, rattle);

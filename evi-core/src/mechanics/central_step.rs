@@ -15,7 +15,7 @@
 //! ```
 //!
 //! The free midpoint has the direction already. What is left is the force `Φ = F'(r̂ − χΦ)`, where Newton's iteration from `Φ = 0` makes the
-//! corrections `(F' − Φ)/(1 + χF'')`: of a spring that is linear in `r` the first is exact. No difference of large numbers appears, so that stiff forces
+//! corrections `(F' − Φ)/(1 + χF'')`: of a spring that is linear in `r` the first is exact. Later ones divide by what belongs to the one before. No difference of large numbers appears, so that stiff forces
 //! leave round-off of the positions alone; and whatever is rounded of `Φ`, the kick is the gradient of a function of `r`.
 
 use core::borrow::Borrow;
@@ -26,7 +26,7 @@ use crate::newton::{self, Tally};
 use crate::scalar::Scalar;
 use crate::system::{CentralForce, MechanicalSystem};
 
-/// `Q M⁻¹ Q` is a sum of products that are rounded, and `Q` as well: below so many roundings it is `μ Q`.
+/// So many roundings of the products that it is made of, and `Q M⁻¹ Q` is still `μ Q`.
 const ISOTROPIC: f64 = 16.0 * f64::EPSILON;
 /// Squares of distances below have lost digits to underflow, or their terms have.
 const SMALLEST: f64 = f64::MIN_POSITIVE / f64::EPSILON;
@@ -97,9 +97,10 @@ impl<S: MechanicalSystem> CentralStep<S> {
     ) -> Option<[Lost<S, R>; 2]> {
         let kick = self.kick(mechanics, &state.q, &state.p, tally)?;
         let momentum = round_off.momentum(&state.p).plus(&kick);
-        let half_way = momentum.value();
-        let difference = self.drift.times(|i| half_way.borrow()[i]);
-        drop(half_way);
+        let difference = {
+            let half_way = momentum.value();
+            self.drift.times(|i| half_way.borrow()[i])
+        };
         let (q, lost_q) = round_off.position(&state.q).plus(&difference).split();
         let (p, lost_p) = momentum.plus(&kick).split();
         state.replace(state.t + self.h, q, self.legendre.velocity(&p), p).ok()?;
@@ -152,24 +153,29 @@ impl<S: MechanicalSystem> CentralStep<S> {
         let [force, _] = S::central_force(&mechanics.constants, distance);
         let [half_h, compliance] = self.of_spring;
         let moved = compliance * force;
-        tally.begin_iteration();
-        tally.see_correction(|| (moved / distance).abs());
-        tally.count_corrections(1);
         // Written so that a NaN fails.
-        (distance > moved).then_some(half_h * force)
+        if distance > moved {
+            tally.begin_iteration();
+            tally.see_correction(|| (moved / distance).abs());
+            tally.count_corrections(1);
+            return Some(half_h * force);
+        }
+        None
     }
 
     /// `Φ = F'(r)` at the midpoint, from the distance `r̂` of the free one; `None` where Newton's corrections do not lead there.
     #[inline(always)]
     fn force(&self, mechanics: &Mechanics<S>, distance: f64, tally: &mut impl Tally) -> Option<f64> {
-        // Lengths of corrections; 0 before the first.
-        let (mut force, mut previous) = (0.0, 0.0);
+        // `1/(1 + χF'')` of the correction before, and its length; 0 before the first.
+        let (mut force, mut last, mut previous) = (0.0, 0.0, 0.0);
         tally.begin_iteration();
         for corrections in 1..=MOST_CORRECTIONS {
             let midway = distance - self.compliance * force;
             let [value, slope] = S::central_force(&mechanics.constants, midway);
             let softening = 1.0 + self.compliance * slope;
-            let softened = 1.0 / softening;
+            // The first waits for the slope there. The others are short, and take that of the evaluation before: their division runs beside.
+            let fresh = 1.0 / softening;
+            let softened = if corrections == 1 { fresh } else { last };
             let correction = (value - force) * softened;
             let length = correction.abs();
             // Written so that a NaN is refused.
@@ -186,7 +192,7 @@ impl<S: MechanicalSystem> CentralStep<S> {
                 tally.count_corrections(corrections);
                 return Some(force);
             }
-            previous = length;
+            (last, previous) = (fresh, length);
         }
         None
     }
