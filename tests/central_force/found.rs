@@ -101,6 +101,15 @@ scene!(
     kinetic = 0.5 * m * (der(x).powi(2) + der(y).powi(2)),
     potential = 0.5 * k * (x.powi(2) + y.powi(2)) + l * y
 );
+// What one coordinate does is no less than what its distance does.
+#[derive(MechanicalSystem)]
+#[evi(coordinates(x), kinetic = 0.5 * m * der(x).powi(2), potential = 0.25 * k * (x - l).powi(4))]
+struct OneCoordinate {
+    m: f64,
+    k: f64,
+    l: f64,
+}
+
 // Of three squares in two coordinates the sum need not vanish where its gradient does.
 scene!(
     ThreeSquares,
@@ -145,6 +154,7 @@ fn other_forces_are_not_taken_for_one() {
     check_none::<OfVaryingMass>();
     check_none::<Quadratic>();
     check_none::<ThreeSquares>();
+    check_none::<OneCoordinate>();
     check_none::<Weighted>();
     check_none::<Hyperbolic>();
     check_none::<HarmonicOscillator>();

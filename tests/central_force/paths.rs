@@ -16,11 +16,11 @@ struct Compared {
     corrections: f64,
 }
 
-fn compare<const N: usize, S>(system: S, h: f64, start: Start<N>, steps: u64) -> Compared
+fn compare<const N: usize, S, F>(system: S, scheme: F, start: Start<N>, steps: u64) -> Compared
 where
     S: MechanicalSystem<PerCoordinate<f64> = [f64; N]> + Copy,
+    F: Scheme<S> + Scheme<Dense<S>> + Copy,
 {
-    let scheme = Evi::midpoint(h);
     let run = Simulation::new(system, scheme).start(start.q, start.v).expect("a start");
     let mut reduced = run.with_tally(Statistics::default());
     let mut dense = Simulation::new(Dense(system), scheme).start(start.q, start.v).expect("a start");
@@ -51,7 +51,7 @@ fn check<const N: usize, S>(system: S, h: f64, start: Start<N>, bound: f64, corr
 where
     S: MechanicalSystem<PerCoordinate<f64> = [f64; N]> + Copy,
 {
-    let found = compare(system, h, start, 100);
+    let found = compare(system, Evi::midpoint(h), start, 100);
     let at = core::panic::Location::caller();
     println!("{at}: {:.1} ε, {} corrections", found.roundings, found.corrections);
     assert!(found.roundings <= bound, "{} ε", found.roundings);
@@ -88,6 +88,16 @@ fn nonlinear_forces_take_two_or_three() {
     check(BOND, 0.01, TURN, 16.0, 3.0);
     check(Softened { m: 1.2, mu: 0.9, size: 0.3 }, 0.02, Start { q: [0.5, -0.2], v: [0.2, 1.0] }, 16.0, 3.0);
     check(Cup { m: 1.3, k: 2.0 }, 0.02, Start { q: [0.5, -0.8], v: [1.0, 1.0] }, 16.0, 3.0);
+}
+
+#[test]
+fn stages_of_compositions_go_back_in_time_too() {
+    let composed = Evi::midpoint(0.05).composed(Composition::kahan_li_8());
+    for found in [compare(OFF_CENTRE, composed, SWING, 40), compare(BOND, composed, TURN, 40)] {
+        println!("{:.1} ε, {} corrections", found.roundings, found.corrections);
+        // Round-off of 680 stages.
+        assert!(found.roundings <= 64.0 && found.corrections >= 17.0, "{} ε", found.roundings);
+    }
 }
 
 /// Every step of a run and the dense one from the same state: largest differences of positions in ε of the reach, and of velocities in ε of the reach over `h`.
@@ -172,7 +182,7 @@ fn masses_that_turn_the_force_away_are_told_when_a_run_is_prepared() {
     let system = |m2| Elliptic { m1: 0.7, m2, k: 40.0, l: 0.6, g: GRAVITY };
     // Where the masses have the proportions of the distance.
     check(system(1.4), 0.01, start, 16.0, 1.0);
-    let turned = compare(system(0.7), 0.01, start, 100);
+    let turned = compare(system(0.7), Evi::midpoint(0.01), start, 100);
     assert!(turned.corrections > 1.5, "vacuous: {}", turned.corrections);
     assert!(turned.roundings <= 16.0, "{} ε", turned.roundings);
 }

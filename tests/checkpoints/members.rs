@@ -4,7 +4,7 @@ use evi_core::baseline::{GeneralizedAlpha, ImplicitMidpoint, Rattle, Rk4, Shake}
 use evi_core::integrator::Statistics;
 use evi_core::mechanics::Mechanics;
 use evi_core::prelude::*;
-use evi_examples::{CarAxis, DoublePendulum, SphericalPendulum, Start, StiffSpringPendulum};
+use evi_examples::{CarAxis, DoublePendulum, Kepler, SphericalPendulum, Start, StiffSpringPendulum};
 use evi_tests::scenes::{DoublePendulumInAngles, PushedDumbbell};
 
 /// Steps before the checkpoint and after it.
@@ -86,12 +86,20 @@ fn steps_with_positions_eliminated() {
 
 #[test]
 fn steps_for_positions_and_multipliers() {
-    check(SPRING, Evi::midpoint(0.01), SPRING.horizontal(), Remembered);
+    check(SPRING, Evi::simpson(0.01), SPRING.horizontal(), Remembered);
     check(ANGLES, Evi::simpson(0.01), DoublePendulumInAngles::MODERATE, Remembered);
     // Forces that are not linear: explicit at the ends of a step, implicit elsewhere; a constraint that moves.
     check(SPRING, Evi::trapezoid(0.01), SPRING.horizontal(), Forgotten);
     check(CarAxis::STANDARD, Evi::simpson(0.005), CarAxis::STANDARD.standard_start(), Remembered);
     check(PushedDumbbell::STANDARD, Evi::midpoint(0.02), PushedDumbbell::STANDARD.turning(), Remembered);
+}
+
+#[test]
+fn steps_found_by_a_distance() {
+    // From the free flight, which the state determines.
+    check(SPRING, Evi::midpoint(0.01), SPRING.horizontal(), Forgotten);
+    check(Kepler::UNIT, Evi::midpoint(0.01), Kepler::UNIT.near_end(0.6), Forgotten);
+    check(SPRING, Evi::midpoint(0.01).compensated(), SPRING.horizontal(), Remembered);
 }
 
 #[test]

@@ -216,7 +216,7 @@ fn report_of_the_stiff_spring_pendulum() {
 
         Structure
           mass matrix  constant, diagonal
-          potential    general in q
+          potential    quadratic in one distance, with terms affine in q
           Hessian of L qq varies with q, vq zero, vv constant, vt zero
           momentum     zero at rest
           time         appears nowhere
@@ -226,13 +226,15 @@ fn report_of_the_stiff_spring_pendulum() {
              x y
           x  x x
           y  x x
-          unknowns: 2
+          unknowns: 2; 1 in midpoint steps, a distance, for the force is central
 
         Operations per call      + −     ×     ÷  f(x)   temporaries  statements
-          constants                  ·     3     ·     ·             ·           3
+          constants                  ·     3     ·     ·             ·           4
           lagrangian                 5     8     ·     1             1           2
           lagrangian_gradient        3    10     1     1             3           7
           lagrangian_derivatives     8    25     1     1             7          14
+          squared_distance           1     2     ·     ·             ·           1
+          central_force              1     1     ·     ·             ·           1
 
         Left out
           mass matrix: constant, folded once per run
@@ -240,6 +242,7 @@ fn report_of_the_stiff_spring_pendulum() {
           coupling of positions and velocities: zero
           time derivatives: time appears nowhere
           multipliers: the scene has no constraints
+          iteration for the distance in midpoint steps: the force is linear in it
     "#]]);
 }
 

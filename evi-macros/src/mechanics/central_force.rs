@@ -3,13 +3,16 @@
 //! In: [`Equations`]. Out: for `L = ½ vᵀM v + fᵀq − F(r)` with constant `M` and `f`, and a distance `r = √(Σ wₖ eₖ²)` of affine `eₖ`, that
 //! distance, the force along it, and `f`; nothing for other scenes, and for those whose potential is quadratic in `q`.
 //!
-//! Every square has a coordinate of its own, so that the `eₖ` are independent: `r` vanishes exactly where its gradient times `r` does.
+//! In one coordinate there is nothing to eliminate. Every square has a coordinate of its own, so that the `eₖ` are independent: `r` vanishes exactly where its gradient times `r` does.
 
 use std::collections::BTreeSet;
 
 use super::squares::{Key, Square, Squares, affine_nodes};
 use super::{Calculus, Equations};
 use crate::expr::{Binary, ExprId, Graph, Node, Symbol, Unary, replace};
+
+/// Distances that are tried, each in the time that the potential takes to be simplified. One force has few sums of squares.
+const MOST_DISTANCES: usize = 16;
 
 /// A force along a distance `r`, with a uniform one beside it.
 pub(crate) struct CentralForce {
@@ -55,7 +58,9 @@ impl Calculus<'_> {
         let on = graph.dependence(equations.lagrangian);
         let has_constant_mass = equations.hessian_vv.iter().all(|entry| graph.is_constant(entry.value));
         let is_quadratic = equations.hessian_qq.iter().all(|entry| graph.is_constant(entry.value));
-        let is_of_this_kind = equations.constraints.is_empty()
+        let n = equations.force.len();
+        let is_of_this_kind = n > 1
+            && equations.constraints.is_empty()
             && equations.forces.values.is_empty()
             && equations.hessian_vq.is_empty()
             && equations.at_rest.momentum.iter().all(is_zero)
@@ -64,7 +69,6 @@ impl Calculus<'_> {
         if !is_of_this_kind {
             return None;
         }
-        let n = equations.force.len();
         let at_rest = self.at_rest(&[equations.lagrangian])[0];
         let affine = affine_nodes(self.graph, at_rest);
         let squares_of = |graph: &Graph, id| Squares::of(graph, &affine, id, n);
@@ -95,6 +99,9 @@ impl Calculus<'_> {
                 return Some(self.with_distance(along, &found.squares, &slopes));
             }
             tried.push(key);
+            if tried.len() == MOST_DISTANCES {
+                return None;
+            }
         }
         None
     }

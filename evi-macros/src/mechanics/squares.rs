@@ -71,7 +71,9 @@ impl Squares {
                     return None;
                 }
             }
-            if found.squares.len() > most || found.added.len() + found.subtracted.len() > most {
+            // Before the end of a long sum is seen.
+            let n_constants = found.added.len() + found.subtracted.len();
+            if found.squares.len() > most || n_constants > most || pending.len() > 2 * most {
                 return None;
             }
         }
