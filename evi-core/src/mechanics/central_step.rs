@@ -15,8 +15,9 @@
 //! ```
 //!
 //! The free midpoint has the direction already. What is left is the force `Φ = F'(r̂ − χΦ)`, where Newton's iteration from `Φ = 0` makes the
-//! corrections `(F' − Φ)/(1 + χF'')`: of a spring that is linear in `r` the first is exact. Later ones divide by what belongs to the one before. No difference of large numbers appears, so that stiff forces
-//! leave round-off of the positions alone; and whatever is rounded of `Φ`, the kick is the gradient of a function of `r`.
+//! corrections `(F' − Φ)/(1 + χF'')`: of a spring that is linear in `r` the first is exact. Later ones divide by what belongs to the one before.
+//! No difference of large numbers appears, so that stiff forces leave round-off of the positions alone; and whatever is rounded of `Φ`, the kick is
+//! the gradient of a function of `r`.
 
 use core::borrow::Borrow;
 
@@ -173,7 +174,7 @@ impl<S: MechanicalSystem> CentralStep<S> {
             let midway = distance - self.compliance * force;
             let [value, slope] = S::central_force(&mechanics.constants, midway);
             let softening = 1.0 + self.compliance * slope;
-            // The first waits for the slope there. The others are short, and take that of the evaluation before: their division runs beside.
+            // The first waits for the slope. The others are short, and take that of the evaluation before: their division runs beside.
             let fresh = 1.0 / softening;
             let softened = if corrections == 1 { fresh } else { last };
             let correction = (value - force) * softened;

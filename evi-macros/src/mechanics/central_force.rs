@@ -3,7 +3,8 @@
 //! In: [`Equations`]. Out: for `L = ½ vᵀM v + fᵀq − F(r)` with constant `M` and `f`, and a distance `r = √(Σ wₖ eₖ²)` of affine `eₖ`, that
 //! distance, the force along it, and `f`; nothing for other scenes, and for those whose potential is quadratic in `q`.
 //!
-//! In one coordinate there is nothing to eliminate. Every square has a coordinate of its own, so that the `eₖ` are independent: `r` vanishes exactly where its gradient times `r` does.
+//! In one coordinate there is nothing to eliminate. Every square has a coordinate of its own, so that the `eₖ` are independent: `r` vanishes
+//! exactly where its gradient times `r` does.
 
 use std::collections::BTreeSet;
 
