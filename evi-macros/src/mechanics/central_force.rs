@@ -13,7 +13,7 @@ use super::{Calculus, Equations};
 use crate::expr::{Binary, ExprId, Graph, Node, Symbol, Unary, replace};
 
 /// Distances that are tried, each in the time that the potential takes to be simplified. One force has few sums of squares.
-const MOST_DISTANCES: usize = 16;
+const MOST_DISTANCES: usize = 4;
 
 /// A force along a distance `r`, with a uniform one beside it.
 pub(crate) struct CentralForce {

@@ -5,6 +5,7 @@
 //! user writes them. `tests/kernels.rs` of the workspace checks the same of the emitted code.
 
 mod assembled;
+mod central_force;
 mod differentiation;
 mod emission;
 mod fuzz;
