@@ -278,7 +278,7 @@ impl<S: MechanicalSystem, F: Interpolant<S>, const K: usize> EviStep<S, F, K> {
         {
             return Ok(lost);
         }
-        if FoldedStep::<S, F>::EXISTS || Self::MAY_LEAP || Self::MAY_BE_CENTRAL {
+        if FoldedStep::<S, F>::EXISTS || Self::MAY_LEAP || (Self::MAY_BE_CENTRAL && self.central.is_some()) {
             let (end, lost) = self.advanced_rarely(state.clone(), round_off, tally)?;
             *state = end;
             return Ok(lost);

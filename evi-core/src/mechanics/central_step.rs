@@ -31,7 +31,7 @@ use crate::system::{CentralForce, MechanicalSystem};
 const ISOTROPIC: f64 = 16.0 * f64::EPSILON;
 /// Squares of distances below have lost digits to underflow, or their terms have.
 const SMALLEST: f64 = f64::MIN_POSITIVE / f64::EPSILON;
-/// A correction has to be below half of the one before, where it is above round-off.
+/// A correction has to be below half of the one before; where one of round-off is not, all coordinates are asked.
 const SLOWEST: f64 = 0.5;
 /// Corrections after which the step is left to the iteration in all coordinates. Three do where steps are short beside the motion.
 const MOST_CORRECTIONS: usize = 8;

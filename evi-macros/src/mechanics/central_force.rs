@@ -192,6 +192,7 @@ fn distance_for(
         Node::Unary(Unary::Sqrt, x) if is_pure(graph, x) => Some(graph.symbol(Symbol::Distance)),
         Node::Binary(Binary::Powf, x, exponent) if is_pure(graph, x) => {
             let (distance, two) = (graph.symbol(Symbol::Distance), graph.number(2.0));
+            // As it stands: one that varies leaves coordinates beside the distance, and nothing is found.
             let doubled = graph.mul(two, exponent);
             Some(graph.binary(Binary::Powf, distance, doubled))
         }
