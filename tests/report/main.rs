@@ -90,6 +90,24 @@ struct Chain {
     l: f64,
 }
 
+/// Bodies on surfaces, one of them a sphere about the origin on which a single mass moves.
+#[derive(MechanicalSystem)]
+#[evi(
+    coordinates(x, y, z, u, v, w),
+    kinetic = 0.5 * m1 * (der(x).powi(2) + der(y).powi(2)) + 0.5 * m2 * (der(z).powi(2) + der(u).powi(2))
+        + 0.5 * m2 * der(v).powi(2) + 0.5 * m2 * (1.0 + t * t) * der(w).powi(2),
+    potential = 0.0,
+    constraint(ellipse: x.powi(2) + 2.0 * y.powi(2) == l.powi(2)),
+    constraint(two_masses: y.powi(2) + z.powi(2) == l.powi(2)),
+    constraint(circle: u.powi(2) + v.powi(2) == l.powi(2)),
+    constraint(varying_mass: w.powi(2) == l.powi(2)),
+)]
+struct Surfaces {
+    m1: f64,
+    m2: f64,
+    l: f64,
+}
+
 #[test]
 fn constraints_are_classified_one_by_one() {
     let each = Chain::STRUCTURE.each_constraint;
@@ -104,6 +122,17 @@ fn constraints_are_classified_one_by_one() {
     // The curvature of `turning` depends on q through its second derivative in time.
     assert_eq!(quadratic, [true, false, true, true, true]);
     assert!(DoublePendulum::STRUCTURE.has_quadratic_constraints());
+    let spheres = |structure: Structure| {
+        structure.each_constraint.iter().map(|each| each.is_sphere).collect::<Vec<_>>()
+    };
+    assert_eq!(spheres(DoublePendulum::STRUCTURE), [true, false]);
+    assert_eq!(spheres(SphericalPendulum::STRUCTURE), [true]);
+    assert!(
+        SphericalPendulum::STRUCTURE.has_constant_gram() && !DoublePendulum::STRUCTURE.has_constant_gram()
+    );
+    assert_eq!(spheres(Surfaces::STRUCTURE), [false, false, true, false]);
+    // Twice something each; a slope of `turning` is constant.
+    assert_eq!([DoublePendulum::STRUCTURE.jacobian.content, Chain::STRUCTURE.jacobian.content], [2.0, 1.0]);
     // `turning` depends on time, a crank's constraints are trigonometric.
     assert!(!Chain::STRUCTURE.has_quadratic_constraints());
     assert!(!SliderCrank::STRUCTURE.has_quadratic_constraints());
@@ -118,15 +147,15 @@ fn constraints_are_classified_one_by_one() {
 #[test]
 fn a_scene_without_constraints_has_no_operations_for_them() {
     fn check<S: MechanicalSystem>() {
-        let KernelOperations { constraints, constraint_derivatives, constraint_curvature, .. } =
+        let KernelOperations { constraints, constraint_slopes, constraint_curvature, .. } =
             S::STRUCTURE.operations;
-        assert_eq!([constraints, constraint_derivatives, constraint_curvature], [NOTHING; 3]);
+        assert_eq!([constraints, constraint_slopes, constraint_curvature], [NOTHING; 3]);
         assert!(S::REPORT.left_out().any(|sentence| sentence.starts_with("multipliers: ")));
     }
     check::<HarmonicOscillator>();
     check::<Pendulum>();
     check::<DoublePendulumInAngles>();
-    assert_ne!(DoublePendulum::STRUCTURE.operations.constraint_derivatives, NOTHING);
+    assert_ne!(DoublePendulum::STRUCTURE.operations.constraint_slopes, NOTHING);
 }
 
 #[test]

@@ -46,7 +46,7 @@ fn report_of_the_double_pendulum() {
           lagrangian_gradient        ·     4     ·     ·             ·           4
           lagrangian_derivatives     ·     4     ·     ·             ·           4
           constraints                6     4     ·     ·             2           4
-          constraint_derivatives     6     8     ·     ·             2          10
+          constraint_slopes          6     4     ·     ·             ·           6
           constraint_curvature       4     8     ·     ·             2           4
 
         Left out
@@ -140,7 +140,7 @@ fn report_of_a_scene_with_forces() {
           lagrangian_gradient        ·     2     ·     ·             ·           2
           lagrangian_derivatives     ·     2     ·     ·             ·           2
           constraints                2     2     ·     ·             ·           1
-          constraint_derivatives     2     4     ·     ·             ·           3
+          constraint_slopes          2     2     ·     ·             ·           1
           constraint_curvature       1     4     ·     ·             ·           1
           forces                     1     4     ·     1             1           3
           force_derivatives          1     4     ·     1             1           3
@@ -189,7 +189,7 @@ fn report_of_the_spherical_pendulum() {
           lagrangian_gradient        ·     3     ·     ·             ·           3
           lagrangian_derivatives     ·     3     ·     ·             ·           3
           constraints                3     3     ·     ·             ·           1
-          constraint_derivatives     3     6     ·     ·             ·           4
+          constraint_slopes          3     3     ·     ·             ·           1
           constraint_curvature       2     6     ·     ·             ·           1
 
         Left out
@@ -333,7 +333,7 @@ fn report_of_many_kinds_of_constraints() {
           lagrangian_gradient        3     9     ·     1             2           8
           lagrangian_derivatives     3    11     ·     1             2          10
           constraints                7     4     ·     2             3           7
-          constraint_derivatives     8     8     ·     2             1          10
+          constraint_slopes          8     8     ·     2             1          10
           constraint_curvature       6     8     ·     2             4           5
 
         Left out

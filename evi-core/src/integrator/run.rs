@@ -34,6 +34,8 @@ pub(crate) fn steps_between(t: f64, target: f64, h: f64) -> Result<u64, StepErro
 /// A step that fails leaves the run at the last state that was reached.
 pub struct Run<S: MechanicalSystem, M, T = Fallbacks> {
     map: M,
+    /// Of the map, which may be asked for its own in the middle of a step: what is read once need not be kept until its end.
+    h: f64,
     state: State<S>,
     start_time: f64,
     steps: u64,
@@ -43,15 +45,15 @@ pub struct Run<S: MechanicalSystem, M, T = Fallbacks> {
 impl<S: MechanicalSystem, M: OneStep<S>> Run<S, M> {
     pub(crate) fn new(map: M, state: State<S>) -> Self {
         let start_time = state.t;
-        Self { map, state, start_time, steps: 0, tally: Fallbacks::default() }
+        Self { h: map.h(), map, state, start_time, steps: 0, tally: Fallbacks::default() }
     }
 }
 
 impl<S: MechanicalSystem, M: OneStep<S>, T: Tally> Run<S, M, T> {
     /// The run that has come from `start_time` to `state` in so many steps.
     #[cfg(feature = "std")]
-    pub(super) const fn resumed(map: M, state: State<S>, start_time: f64, steps: u64, tally: T) -> Self {
-        Self { map, state, start_time, steps, tally }
+    pub(super) fn resumed(map: M, state: State<S>, start_time: f64, steps: u64, tally: T) -> Self {
+        Self { h: map.h(), map, state, start_time, steps, tally }
     }
 
     /// Time of the state that the run has started from.
@@ -62,8 +64,8 @@ impl<S: MechanicalSystem, M: OneStep<S>, T: Tally> Run<S, M, T> {
     /// The run from where it stands, with another tally of what happens inside its steps:
     /// `run.with_tally(Statistics::default())` counts Newton's corrections too.
     pub fn with_tally<U: Tally>(self, tally: U) -> Run<S, M, U> {
-        let Self { map, state, start_time, steps, .. } = self;
-        Run { map, state, start_time, steps, tally }
+        let Self { map, h, state, start_time, steps, .. } = self;
+        Run { map, h, state, start_time, steps, tally }
     }
 
     /// What has happened inside the steps, the failed one included; without more ado, how often the pivoted dense solve had to help.
@@ -161,7 +163,7 @@ impl<S: MechanicalSystem, M: OneStep<S>, T: Tally> Run<S, M, T> {
         self.steps += 1;
         // A product, since a sum of 1e6 step sizes loses six digits.
         // The cast of a signed number is one instruction; no run has 2⁶³ steps.
-        self.state.t = self.start_time + self.steps as i64 as f64 * self.map.h();
+        self.state.t = self.start_time + self.steps as i64 as f64 * self.h;
         Ok(taken)
     }
 

@@ -6,6 +6,9 @@ use crate::scalar::Scalar;
 /// A determinant below this fraction of one of its two terms is their round-off: the two are then the same but for that.
 const SMALLEST_DETERMINANT: f64 = 8.0 * f64::EPSILON;
 
+/// The same for solutions that nobody checks by another evaluation: a determinant above has lost no more than four digits.
+const SMALLEST_UNGUARDED: f64 = 1.0 / 4096.0;
+
 /// Below, the terms of a determinant have lost digits to underflow.
 const UNDERFLOW: f64 = f64::MIN_POSITIVE / f64::EPSILON;
 
@@ -32,14 +35,31 @@ impl Factorization<[f64; 0], [[f64; 0]; 0]> for Inverse0 {
     }
 }
 
-/// The reciprocal of a 1 × 1 matrix.
-pub struct Inverse1(f64);
+/// A 1 × 1 matrix and its reciprocal.
+pub struct Inverse1 {
+    entry: f64,
+    reciprocal: f64,
+}
 
 impl Factorization<[f64; 1], [[f64; 1]; 1]> for Inverse1 {
     #[inline]
     fn factor([[a]]: &[[f64; 1]; 1]) -> Result<Self, SingularMatrix> {
-        // Written so that a NaN is singular.
-        if a.abs() > 0.0 { Ok(Self(1.0 / a)) } else { Err(SingularMatrix { pivot_ratio: 0.0 * a }) }
+        // Written so that a NaN is singular; an infinite one has no reciprocal either.
+        if a.abs() > 0.0 && a.abs() < f64::INFINITY {
+            Self::factor_unguarded(&[[*a]])
+        } else {
+            Err(SingularMatrix { pivot_ratio: 0.0 * a })
+        }
+    }
+
+    #[inline(always)]
+    fn factor_unguarded(&[[entry]]: &[[f64; 1]; 1]) -> Result<Self, SingularMatrix> {
+        Ok(Self { entry, reciprocal: 1.0 / entry })
+    }
+
+    #[inline(always)]
+    fn doubt(&self) -> f64 {
+        0.0 * self.entry
     }
 
     #[inline]
@@ -49,12 +69,12 @@ impl Factorization<[f64; 1], [[f64; 1]; 1]> for Inverse1 {
 
     #[inline]
     fn solve(&self, [b]: &mut [f64; 1]) {
-        *b *= self.0;
+        *b *= self.reciprocal;
     }
 
     #[inline(always)]
     fn solve_up_to_factor(&self, _: &mut [f64; 1]) -> f64 {
-        self.0
+        self.reciprocal
     }
 
     #[inline]
@@ -74,15 +94,13 @@ pub struct Inverse2 {
 
 impl Factorization<[f64; 2], [[f64; 2]; 2]> for Inverse2 {
     #[inline]
-    fn factor(&matrix: &[[f64; 2]; 2]) -> Result<Self, SingularMatrix> {
-        let [main, other] = terms(&matrix);
-        let determinant = main - other;
-        // By squares: no digit is lost to underflow in a determinant whose square has not vanished.
-        if determinant * determinant > (SMALLEST_DETERMINANT * SMALLEST_DETERMINANT) * (main * main) {
-            Ok(Self { matrix, per_adjugate: 1.0 / determinant })
-        } else {
-            Err(singular([main, other]))
-        }
+    fn factor(matrix: &[[f64; 2]; 2]) -> Result<Self, SingularMatrix> {
+        Self::with_determinant_above(SMALLEST_DETERMINANT, matrix)
+    }
+
+    #[inline(always)]
+    fn factor_unguarded(matrix: &[[f64; 2]; 2]) -> Result<Self, SingularMatrix> {
+        Self::with_determinant_above(SMALLEST_UNGUARDED, matrix)
     }
 
     #[inline]
@@ -115,6 +133,19 @@ impl Factorization<[f64; 2], [[f64; 2]; 2]> for Inverse2 {
 }
 
 impl Inverse2 {
+    /// Factors a matrix whose determinant is more than the `smallest` fraction of one of its two terms.
+    #[inline(always)]
+    fn with_determinant_above(smallest: f64, &matrix: &[[f64; 2]; 2]) -> Result<Self, SingularMatrix> {
+        let [main, other] = terms(&matrix);
+        let determinant = main - other;
+        // By squares: no digit is lost to underflow in a determinant whose square has not vanished.
+        if determinant * determinant > (smallest * smallest) * (main * main) {
+            Ok(Self { matrix, per_adjugate: 1.0 / determinant })
+        } else {
+            Err(singular([main, other]))
+        }
+    }
+
     /// Factors a matrix whose determinant over- or underflows, in the unit in which its largest entry is nearly 1: a power of two, which
     /// changes no digit.
     #[cold]

@@ -57,6 +57,23 @@ pub trait Factorization<V, M>: Sized {
         Self::factor(matrix)
     }
 
+    /// The same for solutions that are small where they are right, which is looked at, with the [`doubt`](Self::doubt) added to it; what they solve is not evaluated
+    /// again. Those with a singular matrix of one row are not finite, and nothing else tells.
+    ///
+    /// # Errors
+    /// As [`factor`](Self::factor), of more rows, and where solutions lose more than four digits.
+    #[inline(always)]
+    fn factor_unguarded(matrix: &M) -> Result<Self, SingularMatrix> {
+        Self::factor(matrix)
+    }
+
+    /// 0; NaN of a matrix that is not finite, and was not refused for it.
+    #[inline(always)]
+    fn doubt(&self) -> f64 {
+        // Which the compiler does not add to anything.
+        -0.0
+    }
+
     /// Factors a matrix whose rows and columns have different units, if that needs no comparison of pivots with each other.
     #[inline]
     fn factor_unscaled(_matrix: &M) -> Option<Self> {

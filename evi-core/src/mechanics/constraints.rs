@@ -2,6 +2,7 @@
 
 use super::{CoordinateMatrix, Coupling, Mechanics};
 use crate::array::Array;
+use crate::linear::largest_magnitude;
 use crate::scalar::Scalar;
 use crate::system::{Entry, MechanicalSystem};
 
@@ -15,7 +16,50 @@ pub(super) type Gram<S> = <S as MechanicalSystem>::PerConstraint<<S as Mechanica
 /// Where a sum begins: `−0 + x` is `x` to the last bit, so that the compiler leaves the addition out.
 pub(crate) const NOTHING: f64 = -0.0;
 
+/// A matrix over the constraints being added up: terms of even and of odd columns by themselves, two short chains of additions instead of a long
+/// one. Few constraints wait for their matrix; to add up the halves of many, most of whose entries are zero, takes longer than the wait.
+struct Halves<S: MechanicalSystem> {
+    even: Gram<S>,
+    odd: Gram<S>,
+}
+
+impl<S: MechanicalSystem> Halves<S> {
+    const ARE_TWO: bool = S::N_CONSTRAINTS <= 4;
+
+    #[inline(always)]
+    fn none() -> Self {
+        let nothing = || Array::from_fn(|_| Array::from_fn(|_| NOTHING));
+        Self { even: nothing(), odd: nothing() }
+    }
+
+    #[inline(always)]
+    fn add(&mut self, row: usize, other: usize, col: usize, term: f64) {
+        let half = if Self::ARE_TWO && col % 2 == 1 { &mut self.odd } else { &mut self.even };
+        half[row][other] += term;
+    }
+
+    #[inline(always)]
+    fn sum(self) -> Gram<S> {
+        let Self { even, odd } = self;
+        if !Self::ARE_TWO {
+            return even;
+        }
+        Array::from_fn(|row| Array::from_fn(|other| even[row][other] + odd[row][other]))
+    }
+}
+
 impl<S: MechanicalSystem> Mechanics<S> {
+    /// `φ` and the varying entries of `G`, both over the content of the slopes: in these units impulses are larger by that factor.
+    #[inline(always)]
+    pub(crate) fn primitive_constraints(
+        &self,
+        t: f64,
+        q: &S::PerCoordinate<f64>,
+    ) -> (S::PerConstraint<f64>, S::PerJacobianEntry<f64>) {
+        let (residuals, slopes) = S::constraint_slopes(&self.constants, t, q);
+        (over_content::<S>(residuals), slopes)
+    }
+
     /// Adds `Gᵀ x` to `sum`.
     #[inline]
     pub(crate) fn add_constraint_force(
@@ -66,23 +110,46 @@ impl<S: MechanicalSystem> Mechanics<S> {
         jacobian: &S::PerJacobianEntry<f64>,
         directions: &Directions<S>,
     ) -> Gram<S> {
-        /// Few constraints wait for their matrix; to add up matrices of many, most of whose entries are zero, takes longer than the wait.
-        const MOST_IN_HALVES: usize = 4;
-        let nothing = || -> Gram<S> { Array::from_fn(|_| Array::from_fn(|_| NOTHING)) };
-        if S::N_CONSTRAINTS > MOST_IN_HALVES {
-            let mut gram = nothing();
-            self.for_each_gram_term::<C>(jacobian, directions, |row, other, _, term| {
-                gram[row][other] += term
-            });
-            return gram;
-        }
-        // Terms of even and of odd columns: two short chains of additions instead of a long one.
-        let (mut even, mut odd) = (nothing(), nothing());
+        let mut halves = Halves::<S>::none();
         self.for_each_gram_term::<C>(jacobian, directions, |row, other, col, term| {
-            let gram = if col % 2 == 0 { &mut even } else { &mut odd };
-            gram[row][other] += term;
+            halves.add(row, other, col, term);
         });
-        Array::from_fn(|row| Array::from_fn(|col| even[row][col] + odd[row][col]))
+        halves.sum()
+    }
+
+    /// `G₁ B G₀ᵀ` for a diagonal matrix `B`.
+    #[inline(always)]
+    pub(crate) fn gram_matrix_between<C: Coupling<S>>(
+        &self,
+        end: &S::PerJacobianEntry<f64>,
+        matrix: &CoordinateMatrix<S, C>,
+        start: &S::PerJacobianEntry<f64>,
+    ) -> Gram<S> {
+        let mut rows: Directions<S> = Array::from_fn(|_| Array::from_fn(|_| 0.0));
+        S::for_each_slope(&self.constants, start, |row, col, slope| rows[row][col] = slope);
+        let mut halves = Halves::<S>::none();
+        S::for_each_slope_pair(&self.constants, end, |row, other, col, slope| {
+            halves.add(row, other, col, matrix.at(col, col) * (slope * rows[other][col]));
+        });
+        halves.sum()
+    }
+
+    /// `G B Gᵀ` for a symmetric matrix `B` that couples what `C` says.
+    #[inline(always)]
+    pub(super) fn symmetric_gram_matrix<C: Coupling<S>>(
+        &self,
+        jacobian: &S::PerJacobianEntry<f64>,
+        matrix: &CoordinateMatrix<S, C>,
+    ) -> Gram<S> {
+        if !C::IS_DIAGONAL {
+            return self.gram_matrix::<C>(jacobian, &self.constraint_directions(jacobian, matrix));
+        }
+        let mut halves = Halves::<S>::none();
+        S::for_each_gram_product(&self.constants, jacobian, |row, other, col, slope, other_slope| {
+            halves.add(row, other, col, matrix.at(col, col) * (slope * other_slope));
+        });
+        let lower = halves.sum();
+        Array::from_fn(|row| Array::from_fn(|col| if col <= row { lower[row][col] } else { lower[col][row] }))
     }
 
     /// Calls `add(row, other, col, G[row][col] D[col][other])` for every term of `G D`.
@@ -162,6 +229,32 @@ impl<S: MechanicalSystem> Mechanics<S> {
         are_forms.then(|| Array::from_fn(|c| 2.0 * at_origin[c].abs()))
     }
 
+    /// Up to which `|d|²` of a displacement `d` every `½ |dᵀ φ_qq d|`, over the content, is at most `allowed`, where `φ_qq` is constant: the least
+    /// `2 allowed_c / maxᵢ Σⱼ |∂²φ_c/∂qᵢ∂qⱼ|`.
+    pub(crate) fn straight_up_to(&self, allowed: &S::PerConstraint<f64>) -> f64 {
+        debug_assert!(
+            S::STRUCTURE.has_quadratic_constraints(),
+            "the curvature is the same everywhere and at all times"
+        );
+        let origin = Array::from_fn(|_| 0.0);
+        let limit = |c: usize| {
+            let alone = Array::from_fn(|other| if other == c { 1.0 } else { 0.0 });
+            let mut sums = S::PerCoordinate::<f64>::from_fn(|_| 0.0);
+            self.for_each_constraint_curvature(0.0, &origin, &alone, |row, _, value| {
+                sums[row] += value.abs()
+            });
+            let bend = largest_magnitude(sums.as_ref().iter().copied());
+            // Where nothing is curved, nothing is left, whatever is allowed.
+            if bend == 0.0 { f64::MAX } else { 2.0 * S::STRUCTURE.jacobian.content * allowed[c] / bend }
+        };
+        let mut least = f64::MAX;
+        for limit in (0..S::N_CONSTRAINTS).map(limit) {
+            // Written so that a NaN stays.
+            least = if limit >= least { least } else { limit };
+        }
+        least
+    }
+
     /// `‖G_c‖`, the Euclidean norm of every constraint's gradient.
     pub(crate) fn gradient_norms(&self, jacobian: &S::PerJacobianEntry<f64>) -> S::PerConstraint<f64> {
         let mut squares = S::PerConstraint::<f64>::from_fn(|_| NOTHING);
@@ -205,6 +298,13 @@ impl<S: MechanicalSystem> Mechanics<S> {
     ) {
         for_each_constraint_curvature::<S>(&self.constants, (t, q), multipliers, add);
     }
+}
+
+/// Residuals, or what else is as large as `φ`, over the content of its slopes; of impulses in units of the content, those in units of `φ`.
+#[inline(always)]
+pub(crate) fn over_content<S: MechanicalSystem>(residuals: S::PerConstraint<f64>) -> S::PerConstraint<f64> {
+    let content = const { S::STRUCTURE.jacobian.content };
+    if content == 1.0 { residuals } else { Array::from_fn(|c| residuals[c] * (1.0 / content)) }
 }
 
 /// Calls `add(row, col, value)` for every entry of `Σ μ φ_qq`, the second derivative of `μᵀφ`, of a scene with these constants: for the pairs of

@@ -11,6 +11,8 @@ use crate::system::MechanicalSystem;
 pub(crate) type Rows<S> = <S as MechanicalSystem>::PerCoordinate<<S as MechanicalSystem>::PerCoordinate<f64>>;
 
 /// A constant symmetric matrix over the coordinates, which couples those that `C` says.
+// Aligned, so that instructions on two numbers take them from where they are.
+#[repr(C, align(16))]
 pub(crate) struct CoordinateMatrix<S: MechanicalSystem, C = AsScene> {
     /// All that is read of a diagonal matrix.
     diagonal: S::PerCoordinate<f64>,

@@ -36,9 +36,11 @@ pub(crate) struct FoldedStep<S: MechanicalSystem, F> {
 }
 
 /// An affine force times a time.
+// Aligned, so that instructions on two numbers take them from where they are.
+#[repr(C, align(16))]
 struct Kick<S: MechanicalSystem> {
-    linear: CoordinateMatrix<S>,
     constant: S::PerCoordinate<f64>,
+    linear: CoordinateMatrix<S>,
 }
 
 impl<S: MechanicalSystem, F: Interpolant<S>> FoldedStep<S, F> {

@@ -44,7 +44,7 @@ mod step_equations;
 pub(crate) use central_step::CentralStep;
 pub(crate) use constraint_rank::CONSISTENCY;
 pub use constraint_rank::{ConstraintRank, ConstraintSet};
-pub(crate) use constraints::{Directions, NOTHING};
+pub(crate) use constraints::{Directions, NOTHING, over_content};
 #[cfg(feature = "std")]
 pub(crate) use constraints::{for_each_constraint_curvature, for_each_curved_pair};
 pub(crate) use coordinate_matrix::{CoordinateMatrix, Rows};

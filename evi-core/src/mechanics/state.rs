@@ -9,11 +9,13 @@ use crate::system::MechanicalSystem;
 /// Time, configuration, momentum, the velocity that belongs to the momentum, and the inputs of the step that begins here.
 ///
 /// `p = ∂L/∂v(t, q, v)`, `φ(t, q) = 0` and `G v + ∂φ/∂t = 0` to round-off; only a start or a step makes a state.
+// Aligned, so that instructions on two numbers take them from where they are.
+#[repr(C, align(16))]
 pub struct State<S: MechanicalSystem> {
-    pub(crate) t: f64,
     pub(crate) q: S::PerCoordinate<f64>,
     pub(crate) v: S::PerCoordinate<f64>,
     pub(crate) p: S::PerCoordinate<f64>,
+    pub(crate) t: f64,
     pub(crate) inputs: S::PerInput<f64>,
 }
 

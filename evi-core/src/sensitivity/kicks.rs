@@ -27,7 +27,7 @@ pub(super) fn note_kicks<S: MechanicalSystem, F: KickDriftKick<S>>(
     end: &State<S>,
 ) -> TakenStep<S, 1> {
     let differences = [Array::from_fn(|i| end.q[i] - start.q[i])];
-    let (free, impulse) = (step.free(), step.last_impulse().clone());
+    let (free, impulse) = (step.free(), step.last_impulse());
     let kick = free.start_kick(mechanics, start.t, &start.q);
     let mut half_way = S::PerCoordinate::<f64>::from_fn(|i| start.p[i] + kick[i]);
     if S::N_CONSTRAINTS > 0 {

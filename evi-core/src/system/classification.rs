@@ -103,6 +103,9 @@ pub struct ConstraintStructure {
     pub on_t: bool,
     /// Whether it is a polynomial of degree at most two in `q`: its curvature does not depend on `q`.
     pub is_quadratic: bool,
+    /// Whether it holds the coordinates of one mass at one distance of the origin, `½ content |q_I|² − c` with the content of all constraints: without a cancellation, `|q_I|²` is as constant as
+    /// the constraint holds.
+    pub is_sphere: bool,
     /// The earlier constraint that it repeats, structurally.
     pub repeats: Option<usize>,
 }

@@ -126,12 +126,27 @@ pub trait MechanicalSystem: Sized {
         q: &Self::PerCoordinate<T>,
     ) -> Self::PerConstraint<T>;
 
-    /// `φ(t, q)` and the varying entries of its derivatives, fused.
-    fn constraint_derivatives<T: Scalar>(
+    /// `φ(t, q)` and the varying entries of its derivatives over their [content](JacobianPattern::content), fused.
+    fn constraint_slopes<T: Scalar>(
         constants: &Self::PerConstant<T>,
         t: T,
         q: &Self::PerCoordinate<T>,
     ) -> (Self::PerConstraint<T>, Self::PerJacobianEntry<T>);
+
+    /// `φ(t, q)` and the varying entries of its derivatives, fused.
+    #[inline(always)]
+    fn constraint_derivatives<T: Scalar>(
+        constants: &Self::PerConstant<T>,
+        t: T,
+        q: &Self::PerCoordinate<T>,
+    ) -> (Self::PerConstraint<T>, Self::PerJacobianEntry<T>) {
+        let (residuals, slopes) = Self::constraint_slopes(constants, t, q);
+        let content = const { Self::STRUCTURE.jacobian.content };
+        if content == 1.0 {
+            return (residuals, slopes);
+        }
+        (residuals, Array::from_fn(|entry| slopes[entry] * T::from_f64(content)))
+    }
 
     /// `γ(t, q, v) = vᵀ φ_qq v + 2 φ_qt v + φ_tt`, so that `d²φ/dt² = G q̈ + γ`.
     fn constraint_curvature<T: Scalar>(

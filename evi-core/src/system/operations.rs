@@ -13,8 +13,8 @@ pub struct KernelOperations {
     pub lagrangian_derivatives: Operations,
     /// [`MechanicalSystem::constraints`](super::MechanicalSystem::constraints).
     pub constraints: Operations,
-    /// [`MechanicalSystem::constraint_derivatives`](super::MechanicalSystem::constraint_derivatives).
-    pub constraint_derivatives: Operations,
+    /// [`MechanicalSystem::constraint_slopes`](super::MechanicalSystem::constraint_slopes).
+    pub constraint_slopes: Operations,
     /// [`MechanicalSystem::constraint_curvature`](super::MechanicalSystem::constraint_curvature).
     pub constraint_curvature: Operations,
 }

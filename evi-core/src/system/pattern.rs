@@ -88,6 +88,9 @@ pub struct JacobianPattern {
     pub q: &'static [Entry],
     /// `∂φ/∂t`: row of the constraint, column 0.
     pub t: &'static [Entry],
+    /// The factor that all derivatives have in common, as `(2x, 2y)` of `x² + y²` have 2: what
+    /// [`constraint_slopes`](super::MechanicalSystem::constraint_slopes) leaves out. 1 where an entry is constant.
+    pub content: f64,
 }
 
 /// Place and origin of one structurally nonzero matrix entry.

@@ -65,7 +65,7 @@ impl Structure {
         const NONE: Operations = Operations::NONE;
         Self {
             hessian: HessianPattern { qq: &[], vq: &[], vv: &[], vt: &[] },
-            jacobian: JacobianPattern { q: &[], t: &[] },
+            jacobian: JacobianPattern { q: &[], t: &[], content: 1.0 },
             blocks: HessianBlocks { qq: Block::Zero, vq: Block::Zero, vv: Block::Zero, vt: Block::Zero },
             mass: NOTHING,
             mass_shape: MassShape::Diagonal,
@@ -83,7 +83,7 @@ impl Structure {
                 lagrangian_gradient: NONE,
                 lagrangian_derivatives: NONE,
                 constraints: NONE,
-                constraint_derivatives: NONE,
+                constraint_slopes: NONE,
                 constraint_curvature: NONE,
             },
         }
@@ -119,6 +119,31 @@ impl Structure {
             row += 1;
         }
         true
+    }
+
+    /// Whether some constraint depends on each of the coordinates.
+    pub const fn constrains_every(&self, n_coordinates: usize) -> bool {
+        let mut coordinate = 0;
+        while coordinate < n_coordinates {
+            if !has_column(self.jacobian.q, coordinate) {
+                return false;
+            }
+            coordinate += 1;
+        }
+        true
+    }
+
+    /// Whether every constraint holds a mass of its own at a distance of the origin: `G M⁻¹ Gᵀ` is then the same for every configuration on the
+    /// constraints, to the round-off that they hold to, and diagonal.
+    pub const fn has_constant_gram(&self) -> bool {
+        let mut row = 0;
+        while row < self.each_constraint.len() {
+            if !self.each_constraint[row].is_sphere {
+                return false;
+            }
+            row += 1;
+        }
+        row > 0 && self.constraint_graph.is_empty() && is_diagonal(self.hessian.vv)
     }
 
     /// Whether neither `L` nor `φ` nor a force depends on time.

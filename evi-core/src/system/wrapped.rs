@@ -86,12 +86,12 @@ macro_rules! unfolded_scene_of_inner {
         }
 
         #[inline]
-        fn constraint_derivatives<T: $crate::scalar::Scalar>(
+        fn constraint_slopes<T: $crate::scalar::Scalar>(
             constants: &Self::PerConstant<T>,
             t: T,
             q: &Self::PerCoordinate<T>,
         ) -> (Self::PerConstraint<T>, Self::PerJacobianEntry<T>) {
-            S::constraint_derivatives(constants, t, q)
+            S::constraint_slopes(constants, t, q)
         }
 
         #[inline]

@@ -109,7 +109,7 @@ pub(crate) fn fallback(declaration: &Declaration, diagnostics: &Diagnostics) -> 
                 ) -> Self::PerConstraint<__T> {
                     ::core::unimplemented!()
                 }
-                fn constraint_derivatives<__T: ::evi_core::__private::Scalar>(
+                fn constraint_slopes<__T: ::evi_core::__private::Scalar>(
                     c: &Self::PerConstant<__T>,
                     t: __T,
                     q: &Self::PerCoordinate<__T>,

@@ -80,12 +80,12 @@ impl<'a> Kernels<'a> {
         self.function("constraints", inlining, false, returned, body)
     }
 
-    pub(super) fn constraint_derivatives(&self, program: &Program) -> TokenStream {
+    pub(super) fn constraint_slopes(&self, program: &Program) -> TokenStream {
         let (statements, outputs) = self.writer(false).body(program);
         let (residuals, entries) = outputs.split_at(self.model.constraints.len());
         let returned = quote!((Self::PerConstraint<T>, Self::PerJacobianEntry<T>));
         let (inlining, body) = compiled(program, quote!(#statements ([#(#residuals),*], [#(#entries),*])));
-        self.function("constraint_derivatives", inlining, false, returned, body)
+        self.function("constraint_slopes", inlining, false, returned, body)
     }
 
     pub(super) fn constraint_curvature(&self, program: &Program) -> TokenStream {

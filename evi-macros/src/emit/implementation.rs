@@ -88,7 +88,7 @@ pub(super) fn mechanical_system(
         kernels.lagrangian_gradient(&programs.lagrangian_gradient),
         kernels.lagrangian_derivatives(&programs.lagrangian_derivatives),
         kernels.constraints(&programs.constraints),
-        kernels.constraint_derivatives(&programs.constraint_derivatives),
+        kernels.constraint_slopes(&programs.constraint_slopes),
         kernels.constraint_curvature(&programs.constraint_curvature),
     ];
     let kernels: TokenStream = kernels.into_iter().chain(optional.into_iter().flatten()).collect();

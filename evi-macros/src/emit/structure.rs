@@ -14,6 +14,7 @@ pub(super) fn structure(programs: &Programs) -> TokenStream {
     let (qq, vq) = (entries(&known.hessian_qq), entries(&known.hessian_vq));
     let (vv, vt) = (entries(&known.hessian_vv), entries(&known.hessian_vt));
     let (jacobian_q, jacobian_t) = (entries(&known.jacobian_q), entries(&known.jacobian_t));
+    let content = known.content;
     let classification = &known.classification;
     let (block_qq, block_vq) = (block(classification.qq), block(classification.vq));
     let (block_vv, block_vt) = (block(classification.vv), block(classification.vt));
@@ -32,12 +33,12 @@ pub(super) fn structure(programs: &Programs) -> TokenStream {
     let lagrangian_gradient = operations(programs.lagrangian_gradient.operations);
     let lagrangian_derivatives = operations(programs.lagrangian_derivatives.operations);
     let constraints = operations(programs.constraints.operations);
-    let constraint_derivatives = operations(programs.constraint_derivatives.operations);
+    let constraint_slopes = operations(programs.constraint_slopes.operations);
     let constraint_curvature = operations(programs.constraint_curvature.operations);
     quote! {
         const STRUCTURE: ::evi_core::__private::Structure = ::evi_core::__private::Structure {
             hessian: ::evi_core::__private::HessianPattern { qq: #qq, vq: #vq, vv: #vv, vt: #vt },
-            jacobian: ::evi_core::__private::JacobianPattern { q: #jacobian_q, t: #jacobian_t },
+            jacobian: ::evi_core::__private::JacobianPattern { q: #jacobian_q, t: #jacobian_t, content: #content },
             blocks: ::evi_core::__private::HessianBlocks {
                 qq: #block_qq,
                 vq: #block_vq,
@@ -60,7 +61,7 @@ pub(super) fn structure(programs: &Programs) -> TokenStream {
                 lagrangian_gradient: #lagrangian_gradient,
                 lagrangian_derivatives: #lagrangian_derivatives,
                 constraints: #constraints,
-                constraint_derivatives: #constraint_derivatives,
+                constraint_slopes: #constraint_slopes,
                 constraint_curvature: #constraint_curvature,
             },
         };
@@ -115,7 +116,7 @@ fn potential(potential: Potential) -> TokenStream {
 }
 
 fn constraint_structure(constraint: &ConstraintStructure) -> TokenStream {
-    let ConstraintStructure { on_t, is_quadratic, .. } = *constraint;
+    let ConstraintStructure { on_t, is_quadratic, is_sphere, .. } = *constraint;
     let gradient = block(constraint.gradient);
     let repeats = match constraint.repeats {
         Some(earlier) => quote!(::core::option::Option::Some(#earlier)),
@@ -125,6 +126,7 @@ fn constraint_structure(constraint: &ConstraintStructure) -> TokenStream {
         gradient: #gradient,
         on_t: #on_t,
         is_quadratic: #is_quadratic,
+        is_sphere: #is_sphere,
         repeats: #repeats,
     })
 }

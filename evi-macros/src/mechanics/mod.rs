@@ -4,6 +4,7 @@
 //! structurally are absent.
 
 mod central_force;
+mod content;
 mod squares;
 
 pub(crate) use central_force::CentralForce;
@@ -30,9 +31,11 @@ pub(crate) struct Equations {
     pub(crate) hessian_vt: Vec<Partial>,
     /// `φ`.
     pub(crate) constraints: Vec<ExprId>,
-    /// `∂φ/∂q`.
+    /// The number that the derivatives of `φ` have in common: 2 where each of them is twice something, else 1.
+    pub(crate) content: f64,
+    /// `∂φ/∂q` over the content.
     pub(crate) jacobian_q: Vec<Partial>,
-    /// `∂φ/∂t`, column 0.
+    /// `∂φ/∂t` over the content, column 0.
     pub(crate) jacobian_t: Vec<Partial>,
     /// `d²φ/dt²` without its acceleration term.
     pub(crate) curvature: Vec<ExprId>,
@@ -89,6 +92,7 @@ pub(crate) fn differentiate_equations(graph: &mut Graph, model: &Model) -> Equat
         hessian_vq: calculus.jacobian(&momentum, n, Symbol::Coordinate, |_, _| true),
         hessian_vv: calculus.jacobian(&momentum, n, Symbol::Velocity, is_lower),
         hessian_vt: calculus.jacobian(&momentum, 1, |_| Symbol::Time, |_, _| true),
+        content: 1.0,
         jacobian_q: calculus.jacobian(&constraints, n, Symbol::Coordinate, |_, _| true),
         jacobian_t: calculus.jacobian(&constraints, 1, |_| Symbol::Time, |_, _| true),
         curvature: constraints.iter().map(|&residual| calculus.second_rate(residual)).collect(),
@@ -102,6 +106,11 @@ pub(crate) fn differentiate_equations(graph: &mut Graph, model: &Model) -> Equat
         at_rest: AtRest { force: Vec::new(), momentum: Vec::new() },
         central_force: None,
     };
+    if let Some([by_q, by_t]) =
+        content::halves(calculus.graph, [&equations.jacobian_q, &equations.jacobian_t])
+    {
+        (equations.content, equations.jacobian_q, equations.jacobian_t) = (2.0, by_q, by_t);
+    }
     equations.forces = calculus.forces(&model.forces, n);
     equations.frequencies = calculus.frequencies(&model.frequencies, n);
     equations.observables =

@@ -23,7 +23,7 @@ pub(crate) struct Programs {
     pub(crate) lagrangian_gradient: Program,
     pub(crate) lagrangian_derivatives: Program,
     pub(crate) constraints: Program,
-    pub(crate) constraint_derivatives: Program,
+    pub(crate) constraint_slopes: Program,
     pub(crate) constraint_curvature: Program,
     /// The forces, and the forces with the varying entries of their derivatives; if there are any.
     pub(crate) forces: Option<ForcePrograms>,
@@ -66,7 +66,7 @@ impl Programs {
             ("lagrangian_gradient", &self.lagrangian_gradient),
             ("lagrangian_derivatives", &self.lagrangian_derivatives),
             ("constraints", &self.constraints),
-            ("constraint_derivatives", &self.constraint_derivatives),
+            ("constraint_slopes", &self.constraint_slopes),
             ("constraint_curvature", &self.constraint_curvature),
         ];
         let forces = self
@@ -121,7 +121,7 @@ pub(crate) fn schedule(graph: &Graph, equations: &Equations, structure: Structur
     let gradient: Vec<ExprId> = equations.force.iter().chain(&equations.momentum).copied().collect();
     let derivatives: Vec<ExprId> = gradient.iter().chain(&structure.hessian_entries).copied().collect();
     let constraints = equations.constraints.clone();
-    let constraint_derivatives: Vec<ExprId> =
+    let constraint_slopes: Vec<ExprId> =
         constraints.iter().chain(&structure.jacobian_entries).copied().collect();
     let curvature = equations.curvature.clone();
     let forces = equations.forces.values.clone();
@@ -132,7 +132,7 @@ pub(crate) fn schedule(graph: &Graph, equations: &Equations, structure: Structur
     let central_roots = central.map(CentralForce::roots).unwrap_or_default();
 
     let mut slots = ConstantSlots::new(&structure.constant_entries);
-    let all = [&lagrangian, &derivatives, &constraint_derivatives, &curvature];
+    let all = [&lagrangian, &derivatives, &constraint_slopes, &curvature];
     for roots in all.into_iter().chain([&force_derivatives, &observables, &frequencies, &central_roots]) {
         slots.add_constants_of(graph, roots);
     }
@@ -145,7 +145,7 @@ pub(crate) fn schedule(graph: &Graph, equations: &Equations, structure: Structur
         lagrangian_gradient: kernel(gradient),
         lagrangian_derivatives: kernel(derivatives),
         constraints: kernel(constraints),
-        constraint_derivatives: kernel(constraint_derivatives),
+        constraint_slopes: kernel(constraint_slopes),
         constraint_curvature: kernel(curvature),
         forces: (!forces.is_empty())
             .then(|| ForcePrograms { values: kernel(forces), derivatives: kernel(force_derivatives) }),

@@ -4,7 +4,7 @@
 // lagrangian_gradient        0   4   0   0
 // lagrangian_derivatives     0   4   0   0
 // constraints                6   4   0   0
-// constraint_derivatives     6   8   0   0
+// constraint_slopes          6   4   0   0
 // constraint_curvature       4   8   0   0
 
 const _: () = {
@@ -215,6 +215,7 @@ const _: () = {
                     },
                 ],
                 t: &[],
+                content: 2f64,
             },
             blocks: ::evi_core::__private::HessianBlocks {
                 qq: ::evi_core::__private::Block::Zero,
@@ -249,6 +250,7 @@ const _: () = {
                     }),
                     on_t: false,
                     is_quadratic: true,
+                    is_sphere: true,
                     repeats: ::core::option::Option::None,
                 },
                 ::evi_core::__private::ConstraintStructure {
@@ -259,6 +261,7 @@ const _: () = {
                     }),
                     on_t: false,
                     is_quadratic: true,
+                    is_sphere: false,
                     repeats: ::core::option::Option::None,
                 },
             ],
@@ -296,9 +299,9 @@ const _: () = {
                     divisions: 0usize,
                     functions: 0usize,
                 },
-                constraint_derivatives: ::evi_core::__private::Operations {
+                constraint_slopes: ::evi_core::__private::Operations {
                     additions: 6usize,
-                    multiplications: 8usize,
+                    multiplications: 4usize,
                     divisions: 0usize,
                     functions: 0usize,
                 },
@@ -432,15 +435,15 @@ const _: () = {
                     statements: 4usize,
                 },
                 ::evi_core::__private::KernelReport {
-                    name: "constraint_derivatives",
+                    name: "constraint_slopes",
                     operations: ::evi_core::__private::Operations {
                         additions: 6usize,
-                        multiplications: 8usize,
+                        multiplications: 4usize,
                         divisions: 0usize,
                         functions: 0usize,
                     },
-                    temporaries: 2usize,
-                    statements: 10usize,
+                    temporaries: 0usize,
+                    statements: 6usize,
                 },
                 ::evi_core::__private::KernelReport {
                     name: "constraint_curvature",
@@ -548,7 +551,7 @@ const _: () = {
             [x2, x3]
         }
         #[inline(always)]
-        fn constraint_derivatives<T: ::evi_core::__private::Scalar>(
+        fn constraint_slopes<T: ::evi_core::__private::Scalar>(
             c: &Self::PerConstant<T>,
             t: T,
             q: &Self::PerCoordinate<T>,
@@ -557,13 +560,9 @@ const _: () = {
             let x1 = q[3usize] - q[1usize];
             let x2 = ((q[0usize] * q[0usize]) + (q[1usize] * q[1usize])) - c[7usize];
             let x3 = ((x0 * x0) + (x1 * x1)) - c[8usize];
-            let x4 = q[0usize] * T::from_f64(2.0);
-            let x5 = q[1usize] * T::from_f64(2.0);
-            let x6 = x0 * T::from_f64(2.0);
-            let x7 = -x6;
-            let x8 = x1 * T::from_f64(2.0);
-            let x9 = -x8;
-            ([x2, x3], [x4, x5, x7, x9, x6, x8])
+            let x4 = -x0;
+            let x5 = -x1;
+            ([x2, x3], [q[0usize], q[1usize], x4, x5, x0, x1])
         }
         #[inline]
         fn constraint_curvature<T: ::evi_core::__private::Scalar>(

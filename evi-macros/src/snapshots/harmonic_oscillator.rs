@@ -4,7 +4,7 @@
 // lagrangian_gradient        0   2   0   0
 // lagrangian_derivatives     0   2   0   0
 // constraints                0   0   0   0
-// constraint_derivatives     0   0   0   0
+// constraint_slopes          0   0   0   0
 // constraint_curvature       0   0   0   0
 
 const _: () = {
@@ -36,6 +36,7 @@ const _: () = {
             jacobian: ::evi_core::__private::JacobianPattern {
                 q: &[],
                 t: &[],
+                content: 1f64,
             },
             blocks: ::evi_core::__private::HessianBlocks {
                 qq: ::evi_core::__private::Block::Constant,
@@ -96,7 +97,7 @@ const _: () = {
                     divisions: 0usize,
                     functions: 0usize,
                 },
-                constraint_derivatives: ::evi_core::__private::Operations {
+                constraint_slopes: ::evi_core::__private::Operations {
                     additions: 0usize,
                     multiplications: 0usize,
                     divisions: 0usize,
@@ -210,7 +211,7 @@ const _: () = {
                     statements: 0usize,
                 },
                 ::evi_core::__private::KernelReport {
-                    name: "constraint_derivatives",
+                    name: "constraint_slopes",
                     operations: ::evi_core::__private::Operations {
                         additions: 0usize,
                         multiplications: 0usize,
@@ -314,7 +315,7 @@ const _: () = {
             []
         }
         #[inline(always)]
-        fn constraint_derivatives<T: ::evi_core::__private::Scalar>(
+        fn constraint_slopes<T: ::evi_core::__private::Scalar>(
             c: &Self::PerConstant<T>,
             t: T,
             q: &Self::PerCoordinate<T>,

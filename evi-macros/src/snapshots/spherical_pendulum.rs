@@ -4,7 +4,7 @@
 // lagrangian_gradient        0   3   0   0
 // lagrangian_derivatives     0   3   0   0
 // constraints                3   3   0   0
-// constraint_derivatives     3   6   0   0
+// constraint_slopes          3   3   0   0
 // constraint_curvature       2   6   0   0
 
 const _: () = {
@@ -145,6 +145,7 @@ const _: () = {
                     },
                 ],
                 t: &[],
+                content: 2f64,
             },
             blocks: ::evi_core::__private::HessianBlocks {
                 qq: ::evi_core::__private::Block::Zero,
@@ -179,6 +180,7 @@ const _: () = {
                     }),
                     on_t: false,
                     is_quadratic: true,
+                    is_sphere: true,
                     repeats: ::core::option::Option::None,
                 },
             ],
@@ -216,9 +218,9 @@ const _: () = {
                     divisions: 0usize,
                     functions: 0usize,
                 },
-                constraint_derivatives: ::evi_core::__private::Operations {
+                constraint_slopes: ::evi_core::__private::Operations {
                     additions: 3usize,
-                    multiplications: 6usize,
+                    multiplications: 3usize,
                     divisions: 0usize,
                     functions: 0usize,
                 },
@@ -341,15 +343,15 @@ const _: () = {
                     statements: 1usize,
                 },
                 ::evi_core::__private::KernelReport {
-                    name: "constraint_derivatives",
+                    name: "constraint_slopes",
                     operations: ::evi_core::__private::Operations {
                         additions: 3usize,
-                        multiplications: 6usize,
+                        multiplications: 3usize,
                         divisions: 0usize,
                         functions: 0usize,
                     },
                     temporaries: 0usize,
-                    statements: 4usize,
+                    statements: 1usize,
                 },
                 ::evi_core::__private::KernelReport {
                     name: "constraint_curvature",
@@ -451,17 +453,14 @@ const _: () = {
             [x0]
         }
         #[inline(always)]
-        fn constraint_derivatives<T: ::evi_core::__private::Scalar>(
+        fn constraint_slopes<T: ::evi_core::__private::Scalar>(
             c: &Self::PerConstant<T>,
             t: T,
             q: &Self::PerCoordinate<T>,
         ) -> (Self::PerConstraint<T>, Self::PerJacobianEntry<T>) {
             let x0 = (((q[0usize] * q[0usize]) + (q[1usize] * q[1usize]))
                 + (q[2usize] * q[2usize])) - c[4usize];
-            let x1 = q[0usize] * T::from_f64(2.0);
-            let x2 = q[1usize] * T::from_f64(2.0);
-            let x3 = q[2usize] * T::from_f64(2.0);
-            ([x0], [x1, x2, x3])
+            ([x0], [q[0usize], q[1usize], q[2usize]])
         }
         #[inline]
         fn constraint_curvature<T: ::evi_core::__private::Scalar>(

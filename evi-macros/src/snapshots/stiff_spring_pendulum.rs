@@ -4,7 +4,7 @@
 // lagrangian_gradient        3  10   1   1
 // lagrangian_derivatives     8  25   1   1
 // constraints                0   0   0   0
-// constraint_derivatives     0   0   0   0
+// constraint_slopes          0   0   0   0
 // constraint_curvature       0   0   0   0
 // squared_distance           1   2   0   0
 // central_force              1   1   0   0
@@ -53,6 +53,7 @@ const _: () = {
             jacobian: ::evi_core::__private::JacobianPattern {
                 q: &[],
                 t: &[],
+                content: 1f64,
             },
             blocks: ::evi_core::__private::HessianBlocks {
                 qq: ::evi_core::__private::Block::Varying(::evi_core::__private::Dependence {
@@ -120,7 +121,7 @@ const _: () = {
                     divisions: 0usize,
                     functions: 0usize,
                 },
-                constraint_derivatives: ::evi_core::__private::Operations {
+                constraint_slopes: ::evi_core::__private::Operations {
                     additions: 0usize,
                     multiplications: 0usize,
                     divisions: 0usize,
@@ -245,7 +246,7 @@ const _: () = {
                     statements: 0usize,
                 },
                 ::evi_core::__private::KernelReport {
-                    name: "constraint_derivatives",
+                    name: "constraint_slopes",
                     operations: ::evi_core::__private::Operations {
                         additions: 0usize,
                         multiplications: 0usize,
@@ -391,7 +392,7 @@ const _: () = {
             []
         }
         #[inline(always)]
-        fn constraint_derivatives<T: ::evi_core::__private::Scalar>(
+        fn constraint_slopes<T: ::evi_core::__private::Scalar>(
             c: &Self::PerConstant<T>,
             t: T,
             q: &Self::PerCoordinate<T>,

@@ -5,7 +5,7 @@
 use std::collections::BTreeSet;
 
 use super::union;
-use crate::expr::{Binary, Dependence, ExprId, Graph, Node};
+use crate::expr::{Binary, Dependence, ExprId, Graph, Node, Symbol};
 use crate::mechanics::{Equations, Partial};
 
 /// The kind of a system's equations.
@@ -57,6 +57,8 @@ pub(crate) struct ConstraintStructure {
     pub(crate) on_t: bool,
     /// No second derivative by coordinates varies with a coordinate.
     pub(crate) is_quadratic: bool,
+    /// Whether it holds the coordinates of one mass at one distance of the origin: its slopes are these coordinates.
+    pub(crate) is_sphere: bool,
     /// The earlier constraint that is the same.
     pub(crate) repeats: Option<usize>,
 }
@@ -138,9 +140,30 @@ fn each_constraint(graph: &Graph, equations: &Equations) -> Vec<ConstraintStruct
         gradient: block(graph, equations.jacobian_q.iter().filter(|partial| partial.row == row)),
         on_t: graph.dependence(constraints[row]).on_t,
         is_quadratic: !graph.dependence(equations.curvature[row]).on_q,
+        is_sphere: is_sphere(graph, equations, row),
         repeats: (0..row).find(|&earlier| are_same(graph, constraints[earlier], constraints[row])),
     };
     (0..constraints.len()).map(structure).collect()
+}
+
+fn is_sphere(graph: &Graph, equations: &Equations, row: usize) -> bool {
+    let mass = |i: usize| {
+        let mut of_coordinate =
+            equations.hessian_vv.iter().filter(|partial| partial.row == i || partial.col == i);
+        of_coordinate.next().filter(|partial| partial.row == partial.col && of_coordinate.next().is_none())
+    };
+    let slopes: Vec<&Partial> = equations.jacobian_q.iter().filter(|partial| partial.row == row).collect();
+    let is_still = equations.jacobian_t.iter().all(|partial| partial.row != row);
+    let is_radial =
+        |slope: &&&Partial| graph.node(slope.value) == Node::Symbol(Symbol::Coordinate(slope.col));
+    let masses: Vec<_> = slopes.iter().filter(is_radial).map(|slope| mass(slope.col)).collect();
+    let is_one_mass = masses.first().is_some_and(|first| {
+        first.is_some_and(|first| {
+            graph.is_constant(first.value)
+                && masses.iter().all(|mass| mass.is_some_and(|mass| mass.value == first.value))
+        })
+    });
+    is_still && masses.len() == slopes.len() && is_one_mass
 }
 
 /// Whether two residuals vanish together because they are one node, or each other's negative.

@@ -35,6 +35,8 @@ pub(crate) struct Structure {
     pub(crate) constant_entries: Vec<ExprId>,
     /// Varying entries of the Hessian, in the order of the kernel's output.
     pub(crate) hessian_entries: Vec<ExprId>,
+    /// What the entries of the Jacobian are to be multiplied with.
+    pub(crate) content: f64,
     /// Varying entries of the Jacobian, in the order of the kernel's output.
     pub(crate) jacobian_entries: Vec<ExprId>,
     /// Varying entries of the forces' derivatives, in the order of the kernel's output.
@@ -106,6 +108,7 @@ pub(crate) fn analyze(graph: &Graph, equations: &Equations) -> Structure {
         forced: (0..forces.values.len()).filter(is_forced).collect(),
         constant_entries,
         hessian_entries,
+        content: equations.content,
         jacobian_entries,
         force_entries,
         mass: union(graph, equations.hessian_vv.iter().map(|partial| partial.value)),

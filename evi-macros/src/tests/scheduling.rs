@@ -109,7 +109,7 @@ fn kernels(programs: &Programs) -> [(&'static str, &Program); 6] {
         ("lagrangian_gradient", &programs.lagrangian_gradient),
         ("lagrangian_derivatives", &programs.lagrangian_derivatives),
         ("constraints", &programs.constraints),
-        ("constraint_derivatives", &programs.constraint_derivatives),
+        ("constraint_slopes", &programs.constraint_slopes),
         ("constraint_curvature", &programs.constraint_curvature),
     ]
 }

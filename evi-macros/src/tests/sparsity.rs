@@ -32,8 +32,8 @@ fn double_pendulum() {
     assert!(structure.hessian_entries.is_empty(), "no entry varies");
     // Both masses, each for two coordinates.
     assert_eq!(structure.constant_entries.len(), 2);
-    // Of the six entries of G, 2(x2 − x1) and its negative differ, as do those of y.
-    assert_eq!(structure.jacobian_entries.len(), 6);
+    // Of the six entries of G, 2(x2 − x1) and its negative differ, as do those of y; the 2 is set apart.
+    assert_eq!((structure.jacobian_entries.len(), structure.content), (6, 2.0));
     assert_eq!((structure.mass, structure.constraints), (CONSTANT, ON_Q));
     assert_eq!(structure.lagrangian, Dependence { on_v: true, ..ON_Q });
 }

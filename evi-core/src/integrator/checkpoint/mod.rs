@@ -15,7 +15,7 @@ use crate::system::MechanicalSystem;
 pub use self::resume_error::ResumeError;
 
 /// The layout of the words below. It changes with every change of what a map remembers.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 
 /// A run, written down: its state, its time and steps, and the memory of its map and its tally, all numbers by their bits.
 ///

@@ -1,9 +1,8 @@
-//! Newton's iteration on the multipliers where corrections with one matrix do not suffice: a fresh matrix for each.
+//! A step for which corrections with one matrix did not suffice: Newton's iteration on the multipliers with a fresh matrix for each.
 
 use core::borrow::Borrow;
 
-use super::Landing;
-use super::attempt::{Attempt, CHORDS, are_all};
+use super::attempt::{are_all, displacement_by, is_trusted};
 use super::history::History;
 use super::span::{DriftGram, Span, move_by};
 use crate::array::Array;
@@ -14,28 +13,32 @@ use crate::mechanics::{KickDriftKick, Lost, RoundOff, Sum};
 use crate::newton::{self, Progress, Tally};
 use crate::system::MechanicalSystem;
 
+/// The end of a step on the constraints.
+struct Landing<S: MechanicalSystem, Q> {
+    q: Q,
+    /// What was added to the impulse that the span begins with; in the end, the whole impulse.
+    impulse: S::PerConstraint<f64>,
+    /// Factors of `G M⁻¹ Gᵀ` there.
+    gram: S::GramFactors,
+    /// Number of corrections that led there.
+    corrections: usize,
+}
+
 impl<S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'_, S, F, R> {
-    /// Ends a step for which the corrections with one matrix did not suffice.
-    #[inline(never)]
-    pub(super) fn land_slowly(
+    /// Finds the impulse, and ends the step.
+    pub(super) fn search(
         mut self,
-        attempt: Option<Attempt<S, R::Sum>>,
         history: &mut History<S>,
         state: &mut State<S>,
         tally: &mut impl Tally,
     ) -> Result<[Lost<S, R>; 2], StepError> {
-        let carried_on = match attempt {
-            Some(attempt) => self.continue_from(attempt, &history.predicted, tally)?,
-            None => None,
-        };
-        let (expected, mut landing) = match carried_on {
+        let none = S::PerConstraint::<f64>::from_fn(|_| 0.0);
+        let (expected, mut landing) = match self.follow_carefully(&history.predicted, tally) {
             Some(landing) => (history.predicted.clone(), landing),
             None => {
-                let none = S::PerConstraint::<f64>::from_fn(|_| 0.0);
                 self.expect_nothing(&state.p);
                 tally.begin_iteration();
-                let landing = self.iterate(0, none.clone(), self.end(), [&none, &none], tally)?;
-                (none, landing)
+                (none.clone(), self.iterate(0, none.clone(), self.end(), [&none, &none], tally)?)
             }
         };
         let terms = self.momentum.terms_mut();
@@ -45,25 +48,57 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'_, S, F, R>
         self.land(landing, &at_end, history, state, tally)
     }
 
-    /// Newton's iteration after corrections with one matrix; `None` if they did not contract, or lead nowhere.
-    fn continue_from(
+    /// Ends the step: overwrites `state` with the end on the constraints.
+    fn land(
+        self,
+        Landing { q: position, impulse, gram, corrections }: Landing<S, R::Sum>,
+        expected: &S::PerConstraint<f64>,
+        history: &mut History<S>,
+        state: &mut State<S>,
+        tally: &mut impl Tally,
+    ) -> Result<[Lost<S, R>; 2], StepError> {
+        let Self { mechanics, free, t_end: t, momentum, .. } = self;
+        tally.count_corrections(corrections);
+        let (q, lost_q) = position.split();
+        let momentum = momentum.plus(&free.end_kick(mechanics, t, &q));
+        let (_, jacobian) = mechanics.primitive_constraints(t, &q);
+        let (v, momentum) = free.legendre().project(mechanics, &gram, &jacobian, expected, momentum);
+        let (p, lost_p) = momentum.split();
+        state.replace(t, q, v, p)?;
+        history.remember(impulse);
+        Ok([lost_q, lost_p])
+    }
+
+    /// Newton's iteration from the `expected` impulse; `None` where that is not near enough to be followed, the first correction did not contract, or
+    /// the iteration leads nowhere.
+    fn follow_carefully(
         &self,
-        Attempt { q, correction, residuals: [first, second], .. }: Attempt<S, R::Sum>,
         expected: &S::PerConstraint<f64>,
         tally: &mut impl Tally,
-    ) -> Result<Option<Landing<S, R::Sum>>, StepError> {
-        let impulse = correction.impulse;
-        let scale = self.scale(&q, [expected, &impulse]);
+    ) -> Option<Landing<S, R::Sum>> {
+        let mut q = self.end();
+        let (first, jacobian) = self.constraints_at(&q);
+        let matrix = self.matrix(&jacobian);
+        if !is_trusted::<S>(&first, &displacement_by::<S>(&matrix, expected)) {
+            return None;
+        }
+        let gram = DriftGram::<S, F>::factor_of_any_size(&matrix).ok()?;
+        if gram.is_fallback() {
+            tally.count_fallback();
+        }
+        let correction = self.correction(&gram, &first);
+        move_by::<S, _>(&mut q, &correction.moved);
+        let (second, _) = self.constraints_at(&q);
+        let scale = self.scale(&q, [expected, &correction.impulse]);
         tally.begin_iteration();
         tally.see_correction(|| relative_length::<S>(&first, &scale));
-        tally.see_correction(|| relative_length::<S>(&second, &scale));
-        if is_round_off_next::<S>(&second, &first, &scale) {
-            return self.landing(q, impulse, CHORDS, tally).map(Some);
-        }
         let slowest = newton::SLOWEST_CHORD * relative_length::<S>(&first, &scale);
         // Written so that a NaN does not contract.
         let contracts = relative_length::<S>(&second, &scale) <= slowest.max(newton::CHORD_ROUND_OFF);
-        Ok(if contracts { self.iterate(CHORDS, second, q, [expected, &impulse], tally).ok() } else { None })
+        if !contracts {
+            return None;
+        }
+        self.iterate(1, first, q, [expected, &correction.impulse], tally).ok()
     }
 
     /// The landing at `q`, where `φ = 0`.
@@ -99,7 +134,7 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'_, S, F, R>
         };
         loop {
             let (residual, jacobian) = self.constraints_at(&q);
-            let matrix = self.mechanics.gram_matrix::<F::Coupling>(&jacobian, &self.directions);
+            let matrix = self.matrix(&jacobian);
             let gram = DriftGram::<S, F>::factor_of_any_size(&matrix).map_err(|matrix| {
                 let failure = IterationFailure::Singular { correction: progress.corrections() + 1, matrix };
                 self.failed(failure, &residual, 0.0)
@@ -136,14 +171,14 @@ impl<S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'_, S, F, R>
         /// What is left of a residual by equations that are solved.
         const SOLVED: f64 = 1.0 / 1024.0;
         let (residual, jacobian) = self.constraints_at(q);
-        let matrix = self.mechanics.gram_matrix::<F::Coupling>(&jacobian, &self.directions);
+        let matrix = self.matrix(&jacobian);
         let Ok(gram) = DriftGram::<S, F>::factor_of_any_size(&matrix) else { return false };
         let correction = self.correction(&gram, &residual);
         let solved = self.mechanics.reach(&jacobian, &correction.moved);
         let bent = self.remainder(q, &correction.moved);
         let (value, moved) = (q.value(), &correction.moved);
         let end = Array::from_fn(|i| value.borrow()[i] - moved[i]);
-        let left = S::constraints(&self.mechanics.constants, self.t_end, &end);
+        let (left, _) = self.mechanics.primitive_constraints(self.t_end, &end);
         are_all::<S>(|c| {
             let allowed = SOLVED * residual[c].abs();
             // Written so that a NaN is none.

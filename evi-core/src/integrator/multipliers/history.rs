@@ -6,9 +6,13 @@ use crate::system::MechanicalSystem;
 
 /// The impulses so far. They affect the number of corrections and the last bits of a state, nothing else: a prediction that misses is not
 /// followed.
+// Aligned, so that instructions on two numbers take them from where they are.
+#[repr(C, align(16))]
 pub(super) struct History<S: MechanicalSystem> {
     /// The first guess of the next step: what a cubic through the last four impulses predicts.
     pub(super) predicted: S::PerConstraint<f64>,
+    /// At the end of the next step, if it goes as predicted.
+    pub(super) expected: S::PerConstraint<f64>,
     /// Impulses of the last three steps, newest first.
     pub(super) previous: [S::PerConstraint<f64>; 3],
 }
@@ -18,7 +22,7 @@ impl<S: MechanicalSystem> History<S> {
     pub(super) fn none() -> Self {
         let none = S::PerConstraint::<f64>::from_fn(|_| 0.0);
         let previous = [none.clone(), none.clone(), none.clone()];
-        Self { predicted: none, previous }
+        Self { predicted: none.clone(), expected: none, previous }
     }
 
     /// The impulse at the end of a step, from that at its start. Averages of the multipliers with the weights `1 − τ` and `τ`,
@@ -31,13 +35,21 @@ impl<S: MechanicalSystem> History<S> {
     /// Adds the impulse of a step that was taken.
     #[inline(always)]
     pub(super) fn remember(&mut self, impulse: S::PerConstraint<f64>) {
-        let [first, second, third] = &self.previous;
-        self.predicted = Array::from_fn(|c| 4.0 * (impulse[c] + second[c]) - (6.0 * first[c] + third[c]));
-        self.previous = [impulse, first.clone(), second.clone()];
+        let [first, second, third] = &mut self.previous;
+        // One by one: a list that is moved as a whole goes through memory.
+        for c in 0..S::N_CONSTRAINTS {
+            let predicted = 4.0 * (impulse[c] + second[c]) - (6.0 * first[c] + third[c]);
+            self.expected[c] = predicted + (1.0 / 3.0) * (predicted - impulse[c]);
+            self.predicted[c] = predicted;
+            third[c] = second[c];
+            second[c] = first[c];
+            first[c] = impulse[c];
+        }
     }
 }
 
-memory!([S: MechanicalSystem] History<S>, |words| Self { predicted, previous } => {
+memory!([S: MechanicalSystem] History<S>, |words| Self { predicted, expected, previous } => {
     words.numbers(predicted);
+    words.numbers(expected);
     words.part(previous);
 });

@@ -4,7 +4,9 @@ use core::borrow::Borrow;
 
 use crate::array::Array;
 use crate::linear::Factorization;
-use crate::mechanics::{Coupling, Directions, KickDriftKick, Mechanics, NOTHING, RoundOff, State, Sum};
+use crate::mechanics::{
+    Coupling, Directions, KickDriftKick, Mechanics, NOTHING, RoundOff, State, Sum, over_content,
+};
 use crate::system::MechanicalSystem;
 
 /// The motion of one step as a function of the impulse, from the one that is expected:
@@ -53,7 +55,7 @@ impl<'a, S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'a, S, F
         round_off: R,
         expected: &S::PerConstraint<f64>,
     ) -> Self {
-        let (_, jacobian) = S::constraint_derivatives(&mechanics.constants, state.t, &state.q);
+        let (_, jacobian) = mechanics.primitive_constraints(state.t, &state.q);
         // The momentum comes last, since it is known last.
         let mut kick = free.start_kick(mechanics, state.t, &state.q);
         mechanics.subtract_constraint_force(&jacobian, expected, &mut kick);
@@ -86,13 +88,24 @@ impl<'a, S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'a, S, F
     /// `φ` and the varying entries of `G` at the end of the step.
     #[inline(always)]
     pub(super) fn constraints_at(&self, q: &R::Sum) -> (S::PerConstraint<f64>, S::PerJacobianEntry<f64>) {
-        S::constraint_derivatives(&self.mechanics.constants, self.t_end, q.value().borrow())
+        self.mechanics.primitive_constraints(self.t_end, q.value().borrow())
     }
 
     /// `q₁(ℓ₀)`.
     #[inline(always)]
     pub(super) fn end(&self) -> R::Sum {
         self.round_off.position(&self.start).plus(&self.difference)
+    }
+
+    /// `G₁ D G₀ᵀ`.
+    #[inline(always)]
+    pub(super) fn matrix(&self, end: &S::PerJacobianEntry<f64>) -> S::PerConstraint<S::PerConstraint<f64>> {
+        // Of several constraints, products of slopes are shared by the coordinates of a rod: the diagonal matrix comes last.
+        if F::Coupling::IS_DIAGONAL && S::N_CONSTRAINTS > 1 {
+            self.mechanics.gram_matrix_between(end, self.free.drift(), &self.jacobian)
+        } else {
+            self.mechanics.gram_matrix::<F::Coupling>(end, &self.directions)
+        }
     }
 
     /// The correction for `residual`. The derivative of `φ(q₁(ℓ))` is `−G₁ D G₀ᵀ`, the `matrix` but for the sign.
@@ -102,20 +115,23 @@ impl<'a, S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'a, S, F
         matrix: &DriftGram<S, F>,
         residual: &S::PerConstraint<f64>,
     ) -> Correction<S> {
-        let mut correction = residual.clone();
-        let factor = matrix.solve_up_to_factor(&mut correction);
-        let mut pull = S::PerCoordinate::<f64>::from_fn(|_| NOTHING);
-        self.mechanics.add_constraint_force(&self.jacobian, &correction, &mut pull);
-        let moved = if F::Coupling::IS_DIAGONAL {
-            self.free.drift().times(|i| pull[i])
-        } else {
-            self.along(&correction)
+        let mut solution = residual.clone();
+        let factor = matrix.solve_up_to_factor(&mut solution);
+        let impulse = S::PerConstraint::<f64>::from_fn(|c| solution[c] * factor);
+        let force = |y: &S::PerConstraint<f64>| {
+            let mut force = S::PerCoordinate::<f64>::from_fn(|_| NOTHING);
+            self.mechanics.add_constraint_force(&self.jacobian, y, &mut force);
+            force
         };
-        Correction {
-            impulse: Array::from_fn(|c| correction[c] * factor),
-            pull: Array::from_fn(|i| pull[i] * factor),
-            moved: Array::from_fn(|i| moved[i] * factor),
+        if !F::Coupling::IS_DIAGONAL {
+            let (pull, moved) = (force(&impulse), self.along(&impulse));
+            return Correction { impulse, pull, moved };
         }
+        // The factor last, which is known last.
+        let pull = force(&solution);
+        let pull = S::PerCoordinate::<f64>::from_fn(|i| pull[i] * factor);
+        let moved = self.free.drift().times(|i| pull[i]);
+        Correction { impulse, pull, moved }
     }
 
     /// `D G₀ᵀ y`.
@@ -135,7 +151,7 @@ impl<'a, S: MechanicalSystem, F: KickDriftKick<S>, R: RoundOff<S>> Span<'a, S, F
     pub(super) fn remainder(&self, q: &R::Sum, moved: &S::PerCoordinate<f64>) -> S::PerConstraint<f64> {
         let curvature =
             S::constraint_curvature(&self.mechanics.constants, self.t_end, q.value().borrow(), moved);
-        Array::from_fn(|c| 0.5 * curvature[c])
+        over_content::<S>(Array::from_fn(|c| 0.5 * curvature[c]))
     }
 
     /// What the residuals at `end` are compared with: `Σᵢ |G_ci| rᵢ`, where `rᵢ` adds up the magnitudes of what `q₁` is
