@@ -3,7 +3,7 @@
 use crate::linear::Conditioning;
 use crate::memory::memory;
 
-/// What is counted under the steps of a run. A step tells it what happens, as it happens; what a tally does not count costs
+/// What is counted under the steps of a run. A step tells it what happens, as it happens, on ways that it gives up as well; what a tally does not count costs
 /// nothing. Checkpoints are taken of runs whose tally is a [`Memory`](crate::memory::Memory), as all of this crate are.
 pub trait Tally {
     /// Newton's iteration of a step has converged with so many corrections.
